@@ -12,11 +12,10 @@ use crate::sensor::Sensor;
 use crate::words::print_as_words;
 
 /// How a force on one surface point loads a taxel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Kernel {
     /// Point force on an elastic half-space, as in the paper (Eq. 4).
-    #[default]
     Point,
     /// The same force spread evenly over a cell of one pitch by one pitch around its place (Love's closed form).
     ///
@@ -29,6 +28,13 @@ pub enum Kernel {
 }
 
 print_as_words!(Kernel);
+
+impl Kernel {
+    /// The key `kernel` of a design that leaves it out.
+    pub(crate) fn usual(sensor: &Sensor) -> Self {
+        if sensor.wants_cells() { Self::Cell } else { Self::Point }
+    }
+}
 
 /// Stress in pascals at a taxel `depth` metres below the surface for a force of one newton at `offset` metres from
 /// it, along x, y and z: the entries of C31, C32, C33.

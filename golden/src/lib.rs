@@ -8,7 +8,8 @@
 //! ```
 //! use golden::{design::Design, solver::Solver};
 //!
-//! let text = "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n";
+//! let text = "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
+//!             [algorithm]\nestimator = \"line\"\n";
 //! let design = Design::from_toml(text, "pad.toml")?;
 //! let solver = Solver::new(&design)?;
 //! let frame = vec![-1000.0; 12];

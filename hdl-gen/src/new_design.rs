@@ -3,18 +3,11 @@
 use std::ops::RangeInclusive;
 
 use golden::calibrate::{CalibrateError, Settings, calibrate, standard_error};
-use golden::design::{
-    DEFAULT_FULL_SCALE_PA, DEFAULT_NOISE, Design, DesignError, Estimator, Input, Kernel, Regularisation, Samples,
-    Tension,
-};
+use golden::design::{DEFAULT_FULL_SCALE_PA, DEFAULT_NOISE, Design, DesignError, Estimator, Input, Samples, Tension};
 use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneFrame};
 use golden::solver::Solver;
 
-/// Depth in pitches beyond which a new design is regularised.
-const DEEP: f64 = 1.5;
-/// The noise that such a design allows for, as a share of the largest stress.
-const NOISE: f64 = 0.002;
 /// Digits of fitted constants: no processor rounds four otherwise, and no contact shows more.
 const DIGITS: f64 = 1e4;
 
@@ -149,26 +142,20 @@ impl NewDesign {
             return Err(NewDesignError::Counts(bits));
         }
         let Self { estimator, columns, rows, pitch_mm, depth_mm, tension, full_scale_pa, noise, .. } = self;
+        // The fit's start.
+        let constants = if estimator.is_calibrated() { "gain = 1\nfriction_correction = [1, 0]\n" } else { "" };
         // Quoted, so that whatever the name holds reaches the check of names; a JSON string is a TOML string.
         let name = serde_json::Value::from(self.name.as_str());
         let text = format!(
             "format = 3\nname = {name}\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = {pitch_mm:?}\n\
              depth_mm = {depth_mm:?}\ntension = \"{tension}\"\nnoise = {noise:?}\n\
-             [algorithm]\nestimator = \"{estimator}\"\ncount_contacts = true\n\
-             [hardware]\nfull_scale_pa = {full_scale_pa:?}\nscaling = \"per_frame\"\n"
+             [algorithm]\nestimator = \"{estimator}\"\n{constants}\
+             [hardware]\nfull_scale_pa = {full_scale_pa:?}\n"
         );
         let mut design = Design::from_toml(&text, "sptfra new")?;
         if let Some(bits) = self.counts {
             design.input.pa_per_count = Some(pa_per_count(self, bits));
             design.hardware.samples = samples(bits);
-        }
-        // Where noise would become force, and no plan might be possible without.
-        let [x, y] = *pitch_mm;
-        if *depth_mm > DEEP * x.min(y) {
-            design.algorithm.regularisation = Regularisation::Noise { noise: NOISE };
-        }
-        if design.sensor.wants_cells() {
-            design.algorithm.kernel = Kernel::Cell;
         }
         Ok(design)
     }

@@ -14,7 +14,8 @@ import numpy as np
 import sptfra
 
 ROOT = Path(os.environ["SPTFRA_ROOT"])
-SMALL = "format = 3\nname = 'pad'\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n"
+PLAIN = f"format = 3\nbase = '{ROOT / 'golden/tests/plain.toml'}'\n"
+SMALL = PLAIN + "name = 'pad'\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n"
 
 
 def design(more=""):
@@ -56,7 +57,7 @@ class Designs(unittest.TestCase):
         for call, text in [
             (lambda: sptfra.Design.load("nothing.toml"), "nothing.toml: cannot read the file"),
             (lambda: sptfra.Design.from_toml("format = 3\nname = 1"), "line 2, column 8"),
-            (lambda: design("lanes = 3\n"), "pad.toml, line 8"),
+            (lambda: design("lanes = 3\n"), "pad.toml, line 9"),
             (lambda: made(columns=1), "sensor.columns is 1; use a whole number from 2 to 64"),
             (lambda: made(tension="some"), 'tension is "some"; choose one of: read, clipped'),
             (lambda: made(estimator="both"), 'estimator is "both"; choose one of: line, joint'),

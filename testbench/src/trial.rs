@@ -261,7 +261,8 @@ mod tests {
 
     #[test]
     fn cycles_are_exact() {
-        let text = "format = 3\nname = \"tiny\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
+        let text = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+            name = \"tiny\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
              [algorithm]\nplan = \"reduced\"\n[hardware]\nlanes = 4\n";
         let plan = planned(&Design::from_toml(text, "tiny").expect("a design")).expect("a plan");
         let Cycles { latency, interval } = Cycles::predicted(&plan);

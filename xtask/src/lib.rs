@@ -7,3 +7,7 @@ pub mod markdown;
 pub mod mutants;
 pub mod noise;
 pub mod stress;
+
+/// The beginning of a design whose method and scaling need no constants.
+pub(crate) const PLAIN_DESIGN: &str =
+    concat!("format = 3\nbase = \"", env!("CARGO_MANIFEST_DIR"), "/../golden/tests/plain.toml\"\n");

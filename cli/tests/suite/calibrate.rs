@@ -7,7 +7,7 @@ use golden::frames::write_frames;
 use golden::scene::Kind;
 use tempfile::TempDir;
 
-use crate::support::{sptfra, text};
+use crate::support::{PLAIN, sptfra, text};
 use simulated::{Body, Recipe, record, sensor as sensor_of_tests};
 
 #[allow(dead_code, reason = "shared with the tests of the solver, which use all of it")]
@@ -21,8 +21,7 @@ fn from_recordings_to_a_design() {
     let [pad, frames, forces, out, page] =
         ["pad.toml", "press.npy", "weights.csv", "pad-calibrated.toml", "page.html"].map(file);
     let sensor = "[sensor]\ncolumns = 6\nrows = 13\npitch_mm = [3.4, 3.4]\ndepth_mm = 3.0\n";
-    fs::write(&pad, format!("format = 3\nname = \"pad\"\n{sensor}tension = \"clipped\"\npa_per_count = -1.0\n"))
-        .unwrap();
+    fs::write(&pad, format!("{PLAIN}name = \"pad\"\n{sensor}tension = \"clipped\"\npa_per_count = -1.0\n")).unwrap();
     let recipe = Recipe {
         power: 0.8,
         scale: 150.0,
@@ -124,8 +123,7 @@ fn frames_of_another_order_are_told_of() {
     let file = |name: &str| folder.path().join(name);
     let [pad, frames, forces, out] = ["pad.toml", "press.npy", "weights.csv", "out.toml"].map(file);
     let sensor = "[sensor]\ncolumns = 6\nrows = 13\npitch_mm = [3.4, 3.4]\ndepth_mm = 3.0\n";
-    fs::write(&pad, format!("format = 3\nname = \"pad\"\n{sensor}tension = \"clipped\"\npa_per_count = 1.0\n"))
-        .unwrap();
+    fs::write(&pad, format!("{PLAIN}name = \"pad\"\n{sensor}tension = \"clipped\"\npa_per_count = 1.0\n")).unwrap();
     let pressed = Kind::MixedInside.frames(&sensor_of_tests(), 0.5, 0..60).unwrap();
     let counts = |stress: &Vec<f64>| stress.iter().map(|pascals| (-pascals / 40.0).max(0.0).round()).collect();
     let mut recording: Vec<Vec<f64>> = pressed.iter().map(|frame| counts(&frame.stress)).collect();

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 
 use crate::generate::{folder_with_design, good};
-use crate::support::design_text;
+use crate::support::{PLAIN, design_text};
 
 #[test]
 fn inspect_tells_machines_what_is_promised() {
@@ -145,8 +145,10 @@ fn inspect_warns_of_what_will_not_work_well() {
 #[test]
 fn a_design_that_is_too_large_for_its_part_is_written_with_a_warning() {
     let folder = tempfile::tempdir().expect("a folder");
-    let text = "format = 3\nname = \"big_pad\"\n[sensor]\ncolumns = 20\nrows = 20\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
-                [algorithm]\nplan = \"paper\"\n[hardware]\nlanes = 8\n";
+    let text = format!(
+        "{PLAIN}name = \"big_pad\"\n[sensor]\ncolumns = 20\nrows = 20\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
+         [algorithm]\nplan = \"paper\"\n[hardware]\nlanes = 8\n"
+    );
     std::fs::write(folder.path().join("large.toml"), text).expect("a file");
     let warned = |arguments: &[&str]| good(folder.path(), arguments).contains("too much for xczu9eg");
     assert!(warned(&["inspect", "large.toml"]) && warned(&["generate", "large.toml", "--out", "large"]));
@@ -158,7 +160,7 @@ fn each_board_s_part_has_its_shares_and_its_limit() {
     let folder = tempfile::tempdir().expect("a folder");
     let said = |name: &str, part: &str, hardware: &str| {
         let text = format!(
-            "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
+            "{PLAIN}name = \"pad\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
              [algorithm]\nplan = \"reduced\"\nestimator = \"line\"\n[hardware]\npart = \"{part}\"\n{hardware}\n"
         );
         std::fs::write(folder.path().join(format!("{name}.toml")), text).expect("a file");

@@ -39,11 +39,11 @@ fn changed(from: &str, to: &str) -> String {
 
 #[test]
 fn keys_are_known_and_complete() {
-    check_design(&changed("rows = 3", "rows = 3\ncolour = 3"), &["line 6", "colour", "rows"]);
+    check_design(&changed("rows = 3", "rows = 3\ncolour = 3"), &["line 7", "colour", "rows"]);
     check_design(&changed("rows = 3\n", ""), &["rows", "missing"]);
     check_design(&changed("name = \"pad\"\n", ""), &["name", "missing"]);
     check_design(&changed("depth_mm = 3.0", "depth_mm = 3.0\n[hardware]\nspeed = 3"), &["speed", "lanes"]);
-    check_design(&changed("rows = 3", "rows = 3\nrows = 3"), &["line 6", "duplicate"]);
+    check_design(&changed("rows = 3", "rows = 3\nrows = 3"), &["line 7", "duplicate"]);
     check_design("", &["format = 3"]);
     check_design("name = ", &["line 1"]);
 }
@@ -58,7 +58,7 @@ fn sizes_make_sense() {
     };
     check_design(&paper("rows = 33"), &["sensor.rows", "33", "at most 32", "reduced"]);
     for columns in ["4.5", "\"4\"", "99999999999999999999", "nan"] {
-        check_design(&changed("columns = 4", &format!("columns = {columns}")), &["line 4", "columns"]);
+        check_design(&changed("columns = 4", &format!("columns = {columns}")), &["line 5", "columns"]);
     }
     for depth in ["0.0", "-3.0", "nan", "inf", "-inf", "1e300"] {
         check_design(&changed("depth_mm = 3.0", &format!("depth_mm = {depth}")), &["sensor.depth_mm", "1000 mm"]);
@@ -136,7 +136,7 @@ fn a_sensor_that_cannot_be_inverted_is_refused() {
 
 #[test]
 fn the_papers_plan_has_no_joint_estimator() {
-    let keys = "depth_mm = 3.0\n[algorithm]\nplan = \"paper\"\nestimator = \"joint\"\ngain = 1.1";
+    let keys = "depth_mm = 3.0\n[algorithm]\nplan = \"paper\"\nestimator = \"joint\"\ngain = 1.1\nfriction_correction = [1, 0]";
     check_design(&changed("depth_mm = 3.0", keys), &["paper's plan has the line estimator only", "plan = \"reduced\""]);
 }
 

@@ -35,10 +35,13 @@ pub fn text(path: &Path) -> &str {
     path.to_str().expect("UTF-8")
 }
 
+/// The beginning of a design file whose method and scaling need no constants.
+pub const PLAIN: &str = concat!("format = 3\nbase = \"", env!("CARGO_MANIFEST_DIR"), "/../golden/tests/plain.toml\"\n");
+
 /// A design file's text with every optional key left out but those of `more`, which may open tables.
 pub fn design_text(name: &str, size: [usize; 2], pitch_mm: [f64; 2], depth_mm: f64, more: &str) -> String {
     format!(
-        "format = 3\nname = \"{name}\"\n[sensor]\ncolumns = {}\nrows = {}\npitch_mm = {pitch_mm:?}\ndepth_mm = {depth_mm:?}\n\
+        "{PLAIN}name = \"{name}\"\n[sensor]\ncolumns = {}\nrows = {}\npitch_mm = {pitch_mm:?}\ndepth_mm = {depth_mm:?}\n\
          {more}\n",
         size[0], size[1]
     )

@@ -6,14 +6,14 @@ use golden::design::Design;
 use golden::frames::write_frames;
 use golden::rest::{AtRest, RestError};
 
-use crate::support::sptfra;
+use crate::support::{PLAIN, sptfra};
 
 const TAXELS: usize = 78;
 const PA_PER_COUNT: f64 = -24.4;
 
 fn text(more: &str) -> String {
     format!(
-        "format = 3\nname = \"mat\"\n[sensor]\ncolumns = 6\nrows = 13\npitch_mm = [3.4, 3.4]\ndepth_mm = 3.0\n\
+        "{PLAIN}name = \"mat\"\n[sensor]\ncolumns = 6\nrows = 13\npitch_mm = [3.4, 3.4]\ndepth_mm = 3.0\n\
          pa_per_count = {PA_PER_COUNT}\n{more}"
     )
 }

@@ -305,8 +305,9 @@ mod tests {
 
     /// A batch of samples of a small sensor, and a learner that has learned nothing yet.
     fn beginner(units: usize) -> (Vec<Sample>, Basis, Learner) {
-        let pad = "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n\
-                   [algorithm]\nestimator = \"joint\"\n";
+        let pad = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+            name = \"pad\"\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n\
+                   [algorithm]\nestimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]\n";
         let design = Design::from_toml(pad, "pad.toml").unwrap();
         let settings = Settings { contacts: 40, samples: BATCH, ..Settings::default() };
         let mut observer = Observer::new(&design, HALF_WINDOW).unwrap();

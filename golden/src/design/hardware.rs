@@ -90,9 +90,9 @@ pub enum CalibrationIn {
 #[serde(rename_all = "snake_case")]
 pub enum Scaling {
     /// One scale for all frames, that of the full scale; a few cycles less.
-    #[default]
     Fixed,
     /// Block floating point: each frame by its largest stress, so that weak contacts are as exact as strong ones.
+    #[default]
     PerFrame,
 }
 

@@ -36,12 +36,20 @@ pub(super) fn constants(
             format!("run `{}`, which fits new ones", fit(check.origin)),
         ));
     }
-    let [c1, c3] = keys.friction_correction.unwrap_or([1.0, 0.0]);
+    let missing = |key: &str| {
+        check.value(
+            &format!("algorithm.{key}"),
+            "is missing, and the joint estimator needs it",
+            format!("run `{}`, which fits it, or write estimator = \"line\"", fit(check.origin)),
+        )
+    };
+    let gain = keys.gain.ok_or_else(|| missing("gain"))?;
+    let [c1, c3] = keys.friction_correction.ok_or_else(|| missing("friction_correction"))?;
     check.real("algorithm.friction_correction[0]", c1, 0.1, 10.0, "")?;
     check.real("algorithm.friction_correction[1]", c3, -CUBIC_LIMIT, CUBIC_LIMIT, "")?;
     Ok(JointConstants {
         training_set,
-        gain: keys.gain.unwrap_or(1.0),
+        gain,
         friction_correction: [c1, c3],
         correction: None,
         calibrated_for: keys.calibrated_for.clone(),

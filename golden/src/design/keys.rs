@@ -50,7 +50,7 @@ pub(super) struct SensorKeys {
     /// Distance of neighbouring taxels along x and y, in millimetres.
     #[schemars(inner(range(min = 0.01, max = 1000.0)))]
     pub pitch_mm: [f64; 2],
-    /// Thickness of the layer above the taxels, in millimetres. Beyond 1.5 pitches it needs `regularisation`.
+    /// Thickness of the layer above the taxels, in millimetres.
     #[schemars(range(min = 0.01, max = 1000.0))]
     pub depth_mm: f64,
     /// What taxels read of a surface under tension.
@@ -136,9 +136,11 @@ pub(super) enum DeadKey {
 pub(super) struct AlgorithmKeys {
     /// How the mathematics is put into products.
     pub plan: PlanKind,
-    /// Load model behind the matrices C31, C32 and C33.
-    pub kernel: Kernel,
-    /// Tikhonov regularisation of C33, for layers deeper than 1.5 pitches.
+    /// Load model behind the matrices C31, C32 and C33. Without the key `cell` for layers of less than half a pitch, else
+    /// `point`.
+    #[schemars(extend("examples" = ["point"]))]
+    pub kernel: Option<Kernel>,
+    /// Tikhonov regularisation of C33. Without the key `{ noise = 0.002 }` for layers deeper than 1.5 pitches, else 0.
     #[schemars(extend("examples" = [{"noise": 0.002}]))]
     pub regularisation: Option<Regularisation>,
     /// Which matrix entries are kept.
@@ -188,7 +190,7 @@ impl Default for AlgorithmKeys {
     fn default() -> Self {
         Self {
             plan: PlanKind::default(),
-            kernel: Kernel::default(),
+            kernel: None,
             regularisation: None,
             filter: FilterKeys::default(),
             estimator: Estimator::default(),
@@ -199,7 +201,7 @@ impl Default for AlgorithmKeys {
             gain: None,
             friction_correction: None,
             contacts: 1,
-            count_contacts: false,
+            count_contacts: true,
             outputs: Outputs::default(),
             noise_floor_pa: None,
             slip: None,

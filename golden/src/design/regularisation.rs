@@ -3,6 +3,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Sensor;
+
+/// Depth in pitches beyond which a layer is regularised: noise would become force.
+const DEEP: f64 = 1.5;
+/// The noise that such a design allows for, as a share of the largest stress.
+const NOISE: f64 = 0.002;
 /// Largest factor: beyond it the forces are those of the regularisation.
 const MAX_FACTOR: f64 = 1.0;
 /// Factor for each unit of noise, from the table of hard cases: least error over depths of 1 to 4 pitches.
@@ -22,7 +28,7 @@ const FACTOR_PER_NOISE: f64 = 4.0;
                  { noise = 0.002 }"
 )]
 pub enum Regularisation {
-    /// Nothing: the key is absent.
+    /// Nothing.
     #[default]
     #[serde(skip)]
     None,
@@ -37,6 +43,12 @@ pub enum Regularisation {
 }
 
 impl Regularisation {
+    /// The key `regularisation` of a design that leaves it out.
+    pub(crate) fn usual(sensor: &Sensor) -> Self {
+        let [x, y] = sensor.pitch_mm;
+        if sensor.depth_mm > DEEP * x.min(y) { Self::Noise { noise: NOISE } } else { Self::None }
+    }
+
     /// The share of the largest singular value; 0 for none.
     pub fn factor(self) -> f64 {
         match self {

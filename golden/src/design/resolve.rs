@@ -4,7 +4,7 @@ use super::checks::{self, Check};
 use super::files::Beside;
 use super::keys::{AlgorithmKeys, CurveKey, DeadKey, DesignKeys, FORMAT, SensorKeys, SlipKeys};
 use super::{
-    Algorithm, DEFAULT_MAX_STANDARD_ERROR, Design, DesignError, Estimator, FileNames, Input, JointConstants,
+    Algorithm, DEFAULT_MAX_STANDARD_ERROR, Design, DesignError, Estimator, FileNames, Input, JointConstants, Kernel,
     NOISE_FLOOR_DIVISOR, Regularisation, Sensor, Slip, Tension, filter_keys, joint, rules,
 };
 use crate::estimators::Constants;
@@ -36,7 +36,9 @@ pub(super) fn unfitted(mut keys: DesignKeys) -> DesignKeys {
     // Of another estimator they stay, to be refused.
     if keys.algorithm.estimator == Estimator::Joint {
         let AlgorithmKeys { gain, friction_correction, correction, calibrated_for, .. } = &mut keys.algorithm;
-        (*gain, *friction_correction, *correction, *calibrated_for) = (None, None, None, None);
+        let neutral = JointConstants::default();
+        (*gain, *friction_correction) = (Some(neutral.gain), Some(neutral.friction_correction));
+        (*correction, *calibrated_for) = (None, None);
     }
     keys
 }
@@ -49,12 +51,14 @@ fn algorithm(
     full_scale_pa: f64,
 ) -> Result<Algorithm, DesignError> {
     let regularisation = match keys.regularisation {
-        Some(Regularisation::Factor(0.0)) | None => Regularisation::None,
+        Some(Regularisation::Factor(0.0)) => Regularisation::None,
         Some(other) => other,
+        None => Regularisation::usual(sensor),
     };
+    let kernel = keys.kernel.unwrap_or(Kernel::usual(sensor));
     let joint = match keys.estimator {
         Estimator::Joint => joint::constants(check, &keys, |training_set| {
-            joint::conditions(sensor, tension, keys.kernel, regularisation, noise, training_set)
+            joint::conditions(sensor, tension, kernel, regularisation, noise, training_set)
         })?,
         Estimator::Line => {
             joint::refuse(check, &keys)?;
@@ -63,7 +67,7 @@ fn algorithm(
     };
     Ok(Algorithm {
         plan: keys.plan,
-        kernel: keys.kernel,
+        kernel,
         regularisation,
         filter: filter_keys::filter(check, keys.filter, sensor)?,
         estimator: keys.estimator,
@@ -98,10 +102,15 @@ pub(super) fn keys(design: &Design, names: &FileNames) -> DesignKeys {
         (0, false) => Some(DeadKey::Taxels(taxels)),
         (room, _) => Some(DeadKey::Room { taxels, room }),
     };
+    let regularisation = match algorithm.regularisation {
+        none @ Regularisation::None if Regularisation::usual(sensor) == none => None,
+        Regularisation::None => Some(Regularisation::Factor(0.0)),
+        other => Some(other),
+    };
     let mut keys = AlgorithmKeys {
         plan: algorithm.plan,
-        kernel: algorithm.kernel,
-        regularisation: Some(algorithm.regularisation).filter(|&one| one != Regularisation::None),
+        kernel: Some(algorithm.kernel),
+        regularisation,
         filter: filter_keys::keys(&algorithm.filter),
         estimator: algorithm.estimator,
         standard_error: algorithm.standard_error,

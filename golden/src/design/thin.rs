@@ -23,9 +23,11 @@ mod tests {
     }
 
     fn by_kernel(depth_mm: f64, estimator: &str, kernel: &str) -> Option<String> {
+        let constants = if estimator == "joint" { "gain = 1\nfriction_correction = [1, 0]\n" } else { "" };
         let text = format!(
-            "format = 3\nname = \"thin\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 2.0]\ndepth_mm = {depth_mm:?}\n\
-             [algorithm]\nestimator = \"{estimator}\"\nkernel = \"{kernel}\"\n"
+            "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+             name = \"thin\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 2.0]\ndepth_mm = {depth_mm:?}\n\
+             [algorithm]\nestimator = \"{estimator}\"\nkernel = \"{kernel}\"\n{constants}"
         );
         Design::from_toml(&text, "thin").expect("a design").thin_layer()
     }

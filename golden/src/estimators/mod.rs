@@ -28,10 +28,10 @@ pub(crate) use thin::Thin;
 #[serde(rename_all = "lowercase")]
 pub enum Estimator {
     /// Along the line that the direction of push fixes in the plane of the friction components.
-    #[default]
     Line,
     /// Over the whole plane of the friction components at once, without a direction: the centroid of a level set of
     /// Condition 1, calibrated on scenes.
+    #[default]
     Joint,
 }
 

@@ -4,7 +4,7 @@ use golden::bank;
 use golden::dead_taxels::DeadTaxels;
 use golden::design::Design;
 
-const PAD: &str = "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n\
+const PAD: &str = "format = 3\nname = \"pad\"\n[algorithm]\nestimator = \"line\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n\
     pa_per_count = -2.0\n";
 
 fn design(sensor: &str, hardware: &str) -> Result<Design, String> {

@@ -206,8 +206,8 @@ fn a_missing_tare_is_found_where_the_answer_still_looks_good() {
 #[test]
 fn transposed_grids_and_rows_that_run_back() {
     // Pitches of 4 and 2 mm tell a transposed grid from another contact, and so do unequal sides.
-    let oblong =
-        "format = 3\nname = \"oblong\"\n[sensor]\ncolumns = 12\nrows = 8\npitch_mm = [3.0, 3.0]\ndepth_mm = 3.0\n";
+    let oblong = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+         name = \"oblong\"\n[sensor]\ncolumns = 12\nrows = 8\npitch_mm = [3.0, 3.0]\ndepth_mm = 3.0\n";
     for design in [design("sensor1-fast"), Design::from_toml(oblong, "oblong.toml").unwrap()] {
         let (columns, rows) = (design.sensor.columns, design.sensor.rows);
         let frames = frames(&design);
@@ -264,7 +264,8 @@ fn the_end_of_a_converter_below_full_scale() {
 /// A pad as `sptfra new` makes it: taxels of 4 mm, so deep.
 fn pad(columns: usize, rows: usize, depth_mm: f64) -> Design {
     let text = format!(
-        "format = 3\nname = \"pad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 4.0]\ndepth_mm = {depth_mm:?}\n"
+        "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+         name = \"pad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 4.0]\ndepth_mm = {depth_mm:?}\n"
     );
     Design::from_toml(&text, "pad.toml").unwrap()
 }

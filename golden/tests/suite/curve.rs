@@ -5,8 +5,7 @@
 use golden::design::{Curve, Design, Input};
 use golden::solver::{Solver, Status};
 
-const PAD: &str =
-    "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n";
+const PAD: &str = "format = 3\nname = \"pad\"\n[algorithm]\nestimator = \"line\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n";
 const POINTS: &str = "count,pascals\n0,0\n100,-2000\n\n1000,-30000\n4000,-60000\n";
 
 fn pad(keys: &str, points: &str) -> Result<Design, String> {
@@ -116,7 +115,7 @@ fn what_is_no_curve_is_refused() {
         ("curve = \"points.csv\"", "gain,offset\n1,0\n", ["line 2", "no curve", "sensor.calibration"]),
         ("curve = { power = 9.0, scale = 1.0 }", "", ["sensor.curve.power", "is 9", "0.25 to 4"]),
         ("curve = { power = 1.25 }", "", ["pad.toml", "name of a file", "power = 1.25, scale = -0.0066"]),
-        ("curve = 3", "", ["line 8", "name of a file", "power = 1.25, scale = -0.0066"]),
+        ("curve = 3", "", ["line 10", "name of a file", "power = 1.25, scale = -0.0066"]),
         ("curve = { power = 1.0, scale = 0.0 }", "", ["sensor.curve.scale", "is 0", "larger counts press"]),
     ] {
         let message = pad(keys, points).unwrap_err();

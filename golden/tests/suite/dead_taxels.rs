@@ -145,7 +145,7 @@ fn a_smooth_stress_is_continued() {
 /// The small pad with `keys` in its `[sensor]`, and its calibration's lines.
 fn pad(keys: &str, lines: &str) -> Result<Design, String> {
     let text = format!(
-        "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n{keys}\n"
+        "format = 3\nname = \"pad\"\n[algorithm]\nestimator = \"line\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n{keys}\n"
     );
     Design::from_parts(&text, "pad.toml", &[("gains.csv", lines.to_owned())]).map_err(|error| error.to_string())
 }

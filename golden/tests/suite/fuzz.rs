@@ -199,7 +199,7 @@ proptest! {
         let folder = tempfile::tempdir().expect("a folder");
         fs::write(folder.path().join("fuzzed.csv"), changed(&lines.join("\n"), &changes)).expect("writable");
         let design = folder.path().join("pad.toml");
-        let text = "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
+        let text = "format = 3\nname = \"pad\"\n[algorithm]\nestimator = \"line\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
                     pa_per_count = 10.0\ncalibration = \"fuzzed.csv\"\n";
         fs::write(&design, text).expect("writable");
         match Design::load(&design) {

@@ -32,7 +32,8 @@ fn design(name: &str) -> Design {
 }
 
 fn small(algorithm: &str) -> Design {
-    let sensor = "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n";
+    let sensor = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+        name = \"pad\"\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n";
     Design::from_toml(&format!("{sensor}[algorithm]\n{algorithm}\n"), "pad.toml").unwrap()
 }
 
@@ -153,7 +154,7 @@ fn shapes_that_it_never_saw_are_solved_too() {
 #[test]
 fn a_calibration_is_the_same_for_the_same_seed_and_survives_the_file() {
     let settings = Settings { seed: 3, contacts: 60, samples: 300, hidden: 4, spare: 0, steps: 200, hollow: false };
-    let mut design = small("estimator = \"joint\"");
+    let mut design = small("estimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]");
     let mut ticks = 0_usize;
     let found = calibrate(&design, &settings, &mut |_| ticks += 1).unwrap();
     assert_eq!(ticks, settings.work());
@@ -226,12 +227,13 @@ fn the_line_estimator_has_nothing_to_calibrate() {
 #[test]
 fn constants_that_make_no_sense_are_refused() {
     let text = |algorithm: &str| {
-        let sensor =
-            "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n";
+        let sensor = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+             name = \"pad\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n";
         format!("{sensor}[algorithm]\n{algorithm}\n")
     };
     let joint = |keys: &str| text(&format!("estimator = \"joint\"\n{keys}"));
-    let correction = |keys: &str| joint(&format!("[algorithm.correction]\n{keys}"));
+    let correction =
+        |keys: &str| joint(&format!("gain = 1\nfriction_correction = [1, 0]\n[algorithm.correction]\n{keys}"));
     for (text, parts) in [
         (text("gain = 1.1"), ["algorithm.gain", "joint estimator"]),
         (text("friction_correction = [1.0, 0.0]"), ["algorithm.friction_correction", "joint estimator"]),
@@ -241,10 +243,11 @@ fn constants_that_make_no_sense_are_refused() {
             joint("calibrated_for = \"4 x 3 taxels of 4 x 2 mm, 3 mm deep, point, 0\""),
             ["algorithm.calibrated_for", "noise 0.005, sliding"],
         ),
+        (joint(""), ["algorithm.gain", "sptfra calibrate pad.toml"]),
         (joint("gain = 0.0"), ["algorithm.gain", "0.1"]),
         (joint("gain = nan"), ["algorithm.gain", "NaN"]),
         (joint("friction_correction = [1.0]"), ["algorithm.friction_correction", "has 1 values"]),
-        (joint("friction_correction = [1.0, 9.0]"), ["algorithm.friction_correction[1]", "-3.9 to 3.9"]),
+        (joint("gain = 1\nfriction_correction = [1.0, 9.0]"), ["algorithm.friction_correction[1]", "-3.9 to 3.9"]),
         (correction("half_window = [0]\n"), ["half_window", "has 1 values"]),
         (correction("half_window = [4, 0]\nfile = \"w.csv\"\nsha256 = \"0\"\n"), ["half_window[0]", "0 to 3"]),
     ] {
@@ -255,7 +258,7 @@ fn constants_that_make_no_sense_are_refused() {
 
 #[test]
 fn frames_without_an_answer_have_a_status() {
-    let solver = Solver::new(&small("estimator = \"joint\"")).unwrap();
+    let solver = Solver::new(&small("estimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]")).unwrap();
     let solve = |frame: &[f64]| solver.solve(frame).unwrap();
     assert_eq!(solve(&[0.0; 30]), Solution::zeros(Status::NO_CONTACT, 30));
     let mut bad = [-5000.0; 30];
@@ -269,7 +272,7 @@ fn frames_without_an_answer_have_a_status() {
 
 /// Calibrated so little that the correction is as good as random.
 static ROUGH: LazyLock<Solver> = LazyLock::new(|| {
-    let mut design = small("estimator = \"joint\"");
+    let mut design = small("estimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]");
     let settings = Settings { seed: 3, contacts: 40, samples: 200, hidden: 4, spare: 0, steps: 100, hollow: false };
     *design.algorithm.joint = calibrate(&design, &settings, &mut |_| ()).unwrap();
     Solver::new(&design).unwrap()
@@ -304,8 +307,9 @@ fn a_mirrored_frame_has_mirrored_forces() {
 /// On a square x and y may change places, for any frame.
 #[test]
 fn a_transposed_frame_has_transposed_forces_on_a_square() {
-    let square = "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 6\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
-                  [algorithm]\nestimator = \"joint\"\n";
+    let square = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+        name = \"pad\"\n[sensor]\ncolumns = 6\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
+                  [algorithm]\nestimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]\n";
     for (family, hidden) in [(TrainingSet::Sliding, 5), (TrainingSet::General, 4)] {
         let mut design = Design::from_toml(square, "pad.toml").unwrap();
         design.algorithm.joint.training_set = family;
@@ -336,7 +340,8 @@ fn a_transposed_frame_has_transposed_forces_on_a_square() {
 fn calibration_trains_at_the_noise_of_the_sensor() {
     let trained = [0.0, 0.03].map(|noise| {
         let mut design = Design::from_toml(
-            "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 8\nrows = 8\npitch_mm = [3.0, 3.0]\ndepth_mm = 3.0\n",
+            "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+             name = \"pad\"\n[sensor]\ncolumns = 8\nrows = 8\npitch_mm = [3.0, 3.0]\ndepth_mm = 3.0\n",
             "pad.toml",
         )
         .unwrap();

@@ -9,7 +9,8 @@ use nalgebra::DVector;
 
 fn check(columns: usize, rows: usize) {
     let text = format!(
-        "format = 3\nname = \"mat\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n\
+        "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+         name = \"mat\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n\
          [algorithm]\nplan = \"reduced\"\n"
     );
     let design = Design::from_toml(&text, "mat.toml").unwrap();

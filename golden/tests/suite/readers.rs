@@ -12,7 +12,8 @@ use golden::frames::{FrameLines, Frames, Layout, read_recording};
 /// A sensor of 3 columns and 2 rows, with more keys of its `[sensor]`.
 fn pad(keys: &str) -> Design {
     let text = format!(
-        "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n{keys}\n"
+        "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+         name = \"pad\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n{keys}\n"
     );
     Design::from_toml(&text, "pad.toml").unwrap()
 }

@@ -11,8 +11,7 @@ use golden::metrics::field_error;
 use golden::sensor::Sensor;
 use golden::solver::{Solver, Status};
 
-const PAD: &str =
-    "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n";
+const PAD: &str = "format = 3\nname = \"pad\"\n[algorithm]\nestimator = \"line\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n";
 const LINES: &str = "1.5,0\n0.5,-2\n1,0.25\n\n1,1\n 2 , 3\n16,-1e6\n";
 
 fn file(path: &str) -> PathBuf {
@@ -95,7 +94,7 @@ fn wrong_inputs_are_refused() {
         ("pa_per_count = 0", ["sensor.pa_per_count", "is 0", "1e-9"]),
         ("pa_per_count = nan", ["sensor.pa_per_count", "NaN", "1e9"]),
         ("pa_per_count = 1\ncalibration = \"none.csv\"", ["none.csv", "cannot read", "path"]),
-        ("pa_per_counts = 1", ["pa_per_counts", "line 8", "pa_per_count"]),
+        ("pa_per_counts = 1", ["pa_per_counts", "line 10", "pa_per_count"]),
     ] {
         let (_folder, path) = folder(keys, LINES);
         let message = Design::load(&path).unwrap_err().to_string();

@@ -14,7 +14,8 @@ use proptest::prelude::*;
 
 fn design(size: [usize; 2], pitch_mm: [f64; 2], depth_mm: f64, more: &str) -> Design {
     let text = format!(
-        "format = 3\nname = \"pad\"\n[sensor]\ncolumns = {}\nrows = {}\npitch_mm = {pitch_mm:?}\ndepth_mm = {depth_mm:?}\n{more}",
+        "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+         name = \"pad\"\n[sensor]\ncolumns = {}\nrows = {}\npitch_mm = {pitch_mm:?}\ndepth_mm = {depth_mm:?}\n{more}",
         size[0], size[1]
     );
     Design::from_toml(&text, "pad.toml").unwrap()

@@ -7,7 +7,8 @@ use golden::solver::Solver;
 
 fn text(depth_mm: f64, algorithm: &str) -> String {
     format!(
-        "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 7\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = {depth_mm:?}\n\
+        "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+         name = \"pad\"\n[sensor]\ncolumns = 7\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = {depth_mm:?}\n\
          [algorithm]\n{algorithm}\n"
     )
 }

@@ -11,7 +11,8 @@ const PA_PER_COUNT: f64 = -24.4;
 
 fn text(more: &str) -> String {
     format!(
-        "format = 3\nname = \"mat\"\n[sensor]\ncolumns = 6\nrows = 13\npitch_mm = [3.4, 3.4]\ndepth_mm = 3.0\n\
+        "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+         name = \"mat\"\n[sensor]\ncolumns = 6\nrows = 13\npitch_mm = [3.4, 3.4]\ndepth_mm = 3.0\n\
          pa_per_count = {PA_PER_COUNT}\n{more}"
     )
 }

@@ -3,8 +3,8 @@
 use golden::design::{CalibrationIn, Design, Samples};
 use golden::frames::{read_frames_of, to_text};
 
-const PAD: &str =
-    "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n";
+const PAD: &str = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+     name = \"pad\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n";
 
 fn pad(sensor: &str, samples: &str) -> Result<Design, String> {
     let text = format!("{PAD}{sensor}\n[hardware]\nsamples = \"{samples}\"\n");

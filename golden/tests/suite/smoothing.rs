@@ -68,7 +68,7 @@ fn a_step_is_followed_at_once_or_within_its_frames() {
 
 fn design(more: &str) -> Design {
     let text = format!(
-        "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\nnoise = 0.01\n{more}"
+        "format = 3\nname = \"pad\"\n[algorithm]\nestimator = \"line\"\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\nnoise = 0.01\n{more}"
     );
     Design::from_toml(&text, "pad.toml").unwrap()
 }

@@ -17,17 +17,21 @@ const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
 const SEED: u64 = 0x7417;
 const PITCH_MM: f64 = 4.0;
 
+/// The word in a design, with constants to start from.
+const JOINT: &str = "\"joint\"\ngain = 1\nfriction_correction = [1, 0]";
+
 /// 10 × 10 taxels, calibrated where the estimator is the joint one.
 fn design(depth_by_pitch: f64, kernel: Kernel, settings: Option<&Settings>) -> Design {
-    let estimator = settings.map_or("line", |_| "joint");
-    calibrated([PITCH_MM; 2], depth_by_pitch, &format!("\"{estimator}\"\nkernel = \"{kernel}\""), settings)
+    let estimator = settings.map_or("\"line\"", |_| JOINT);
+    calibrated([PITCH_MM; 2], depth_by_pitch, &format!("{estimator}\nkernel = \"{kernel}\""), settings)
 }
 
 /// The same on any pitch, with more to say of the estimator.
 fn calibrated(pitch_mm: [f64; 2], depth_by_pitch: f64, estimator: &str, settings: Option<&Settings>) -> Design {
     let depth = pitch_mm[0].max(pitch_mm[1]) * depth_by_pitch;
     let text = format!(
-        "format = 3\nname = \"thin\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = {pitch_mm:?}\ndepth_mm = {depth:?}\n\
+        "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+         name = \"thin\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = {pitch_mm:?}\ndepth_mm = {depth:?}\n\
          [algorithm]\nestimator = {estimator}\n"
     );
     let mut design = Design::from_toml(&text, "thin").unwrap();
@@ -78,7 +82,7 @@ fn table_of_new_designs() {
     for pitch_mm in [[4.0, 4.0], [4.0, 2.0]] {
         for ratio in [0.3, 0.4, 0.5, 0.6] {
             let cells = [Kernel::Point, Kernel::Cell].map(|kernel| {
-                let estimator = format!("\"joint\"\nkernel = \"{kernel}\"");
+                let estimator = format!("{JOINT}\nkernel = \"{kernel}\"");
                 let design = calibrated(pitch_mm, ratio, &estimator, Some(&settings));
                 let ([tangential, normal], other, _) = judge(&design, 200);
                 let row =

@@ -47,7 +47,8 @@ static ALLOCATOR: Counting = Counting;
 
 fn design(columns: usize, rows: usize) -> Design {
     let text = format!(
-        "format = 3\nname = \"pad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n"
+        "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+         name = \"pad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n"
     );
     Design::from_toml(&text, "pad.toml").unwrap()
 }

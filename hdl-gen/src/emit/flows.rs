@@ -228,7 +228,8 @@ mod tests {
     #[test]
     fn the_testbench_is_named_only_where_it_is() {
         let text = golden::design::Design::from_toml(
-            "format = 3\nname = \"d\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n",
+            "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+             name = \"d\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n",
             "d.toml",
         );
         let plan = Plan::new(&text.unwrap()).unwrap();

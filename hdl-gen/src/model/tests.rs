@@ -12,7 +12,8 @@ use crate::plan::product::Vector;
 
 fn plan(columns: usize, rows: usize, algorithm: &str, hardware: &str) -> Plan {
     let text = format!(
-        "format = 3\nname = \"bad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 2.5]\ndepth_mm = 3.0\n\
+        "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+         name = \"bad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 2.5]\ndepth_mm = 3.0\n\
          [algorithm]\nplan = \"paper\"\n{algorithm}\n[hardware]\n{hardware}"
     );
     Plan::new(&Design::from_toml(&text, "bad.toml").unwrap()).unwrap()

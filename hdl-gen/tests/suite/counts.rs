@@ -10,7 +10,7 @@ use hdl_gen::plan::{Plan, PlanError};
 /// A 4 by 3 design in counts of -10 Pa, with a line `gain,offset` for each taxel.
 fn design(lines: &[(f64, f64)]) -> Design {
     let text = "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
-                pa_per_count = -10.0\ncalibration = \"gains.csv\"\n[hardware]\nlanes = 4\n";
+                pa_per_count = -10.0\ncalibration = \"gains.csv\"\n[algorithm]\nestimator = \"line\"\ncount_contacts = false\n[hardware]\nlanes = 4\nscaling = \"fixed\"\n";
     let lines: String = lines.iter().map(|(gain, offset)| format!("{gain:?},{offset:?}\n")).collect();
     Design::from_parts(text, "pad.toml", &[("gains.csv", lines)]).unwrap()
 }
@@ -77,7 +77,7 @@ fn the_field_is_as_exact_beside_a_small_gain() {
 fn curved(curve: &str, points: &str, lines: &[(f64, f64)]) -> Design {
     let text = format!(
         "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
-         curve = {curve}\ncalibration = \"gains.csv\"\n[hardware]\nlanes = 4\n"
+         curve = {curve}\ncalibration = \"gains.csv\"\n[algorithm]\nestimator = \"line\"\ncount_contacts = false\n[hardware]\nlanes = 4\nscaling = \"fixed\"\n"
     );
     let lines: String = lines.iter().map(|(gain, offset)| format!("{gain:?},{offset:?}\n")).collect();
     Design::from_parts(&text, "pad.toml", &[("gains.csv", lines), ("points.csv", points.to_owned())]).unwrap()

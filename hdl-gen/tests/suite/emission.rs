@@ -147,7 +147,13 @@ fn a_design_that_differs_differs_in_its_hash() {
 #[test]
 fn a_generated_design_has_its_weights_beside_it_and_in_its_hash() {
     let emitted = |weight: i32| {
-        let text = design_text("pad", [4, 3], [4.0, 2.0], 3.0, "[algorithm]\nestimator = \"joint\"");
+        let text = design_text(
+            "pad",
+            [4, 3],
+            [4.0, 2.0],
+            3.0,
+            "[algorithm]\nestimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]",
+        );
         let mut design = Design::from_toml(&text, "pad.toml").unwrap();
         design.algorithm.joint.correction = Some(Correction {
             half_window: [0, 0],

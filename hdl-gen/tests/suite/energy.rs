@@ -43,7 +43,8 @@ fn products_and_accesses_are_counted() {
 fn less_work_takes_less() {
     let of = |algorithm: &str, hardware: &str| {
         let text = format!(
-            "format = 3\nname = \"d\"\n[sensor]\ncolumns = 4\nrows = 4\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n[algorithm]\n{algorithm}\n\
+            "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+             name = \"d\"\n[sensor]\ncolumns = 4\nrows = 4\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n[algorithm]\n{algorithm}\n\
              [hardware]\nlanes = 4\n{hardware}\n"
         );
         Energy::of(&plan(&text)).chip_nj

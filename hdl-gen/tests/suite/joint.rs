@@ -99,7 +99,7 @@ fn terms_of_the_grid_search_have_room_for_every_taxel() {
 #[test]
 fn the_gain_scales_forces_and_nothing_else() {
     let text = |gain: f64| {
-        let more = format!("[algorithm]\nestimator = \"joint\"\ngain = {gain:?}");
+        let more = format!("[algorithm]\nestimator = \"joint\"\ngain = {gain:?}\nfriction_correction = [1, 0]");
         plan(&design_text("pad", [10, 10], [4.0, 4.0], 3.0, &more))
     };
     let frame: Vec<u32> = (0..100)
@@ -220,7 +220,7 @@ fn the_roms_hold_the_weights() {
 #[test]
 fn inspect_says_how_many_points_are_evaluated_at_a_time() {
     let said = |keys: &str| {
-        let more = format!("[algorithm]\nestimator = \"joint\"\n{keys}");
+        let more = format!("[algorithm]\nestimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]\n{keys}");
         let plan = plan(&design_text("pad", [10, 10], [4.0, 4.0], 3.0, &more));
         let report = plan.estimator.slot().report(&plan.design);
         assert!(report.lines().all(|line| line.chars().count() <= 110), "{report}");

@@ -3,10 +3,13 @@
 use golden::design::{Design, PlanKind};
 use hdl_gen::plan::{Plan, PlanError};
 
+const JOINT: &str = "estimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]";
+
 /// Sensor 1 by the reduced plan.
 fn sensor(algorithm: &str, hardware: &str) -> Design {
     let text = format!(
-        "format = 3\nname = \"need\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
+        "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+         name = \"need\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
          [algorithm]\nplan = \"reduced\"\n{algorithm}\n[hardware]\n{hardware}\n"
     );
     Design::from_toml(&text, "need.toml").expect("a design")
@@ -43,7 +46,7 @@ fn offered(refusal: &str) -> &str {
 #[test]
 fn only_remedies_that_meet_the_need_are_offered() {
     let line = |target_us| refusal("", target_us);
-    let joint = |target_us| refusal("estimator = \"joint\"", target_us);
+    let joint = |target_us| refusal(JOINT, target_us);
     for (refusal, expected) in [
         // The smallest change, and if that is the streams' width one that leaves it.
         (line(8.0), "stream_bits = 64, outputs = \"resultants\", "),
@@ -63,9 +66,8 @@ fn remedies_do_what_is_said_of_them() {
     let met = |algorithm: &str, hardware: &str, target_us: f64| {
         Plan::meeting(&sensor(algorithm, hardware), target_us).is_ok()
     };
-    let joint = "estimator = \"joint\"";
-    assert!(!met(joint, "", 6.0) && met(joint, "stream_bits = 64", 6.0));
-    assert!(met(&format!("{joint}\noutputs = \"resultants\""), "", 6.0));
+    assert!(!met(JOINT, "", 6.0) && met(JOINT, "stream_bits = 64", 6.0));
+    assert!(met(&format!("{JOINT}\noutputs = \"resultants\""), "", 6.0));
     assert!(!met("", "stream_bits = 64", 7.0) && met("", "stream_bits = 128", 7.0));
     assert!(!met("", "stream_bits = 128", 6.5) && met("outputs = \"resultants\"", "", 6.5));
 }
@@ -73,7 +75,7 @@ fn remedies_do_what_is_said_of_them() {
 /// A design that keeps its area small is offered no other estimator.
 #[test]
 fn a_small_area_keeps_its_estimator() {
-    let area = Plan::meeting(&sensor("estimator = \"joint\"", "optimise = \"area\""), 5.0);
+    let area = Plan::meeting(&sensor(JOINT, "optimise = \"area\""), 5.0);
     let refusal = area.expect_err("too slow").to_string();
     assert!(!offered(&refusal).contains("estimator"), "{refusal}");
 }

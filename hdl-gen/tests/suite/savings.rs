@@ -8,7 +8,8 @@ use crate::support::plan;
 /// A grid of 4 x 4 taxels: 16 taxels, 4 quads.
 fn square(algorithm: &str, hardware: &str) -> Plan {
     plan(&format!(
-        "format = 3\nname = \"square\"\n[sensor]\ncolumns = 4\nrows = 4\npitch_mm = [3.0, 3.0]\ndepth_mm = 2.0\n\
+        "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+         name = \"square\"\n[sensor]\ncolumns = 4\nrows = 4\npitch_mm = [3.0, 3.0]\ndepth_mm = 2.0\n\
          [algorithm]\n{algorithm}\n[hardware]\nlanes = 4\n{hardware}"
     ))
 }

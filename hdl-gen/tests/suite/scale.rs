@@ -61,7 +61,7 @@ fn the_largest_sensor_has_hardware_with_sixteen_lanes() {
 fn a_mat_of_4096_taxels_has_hardware() {
     // With the estimator of new designs: its points see a taxel a cycle, while the lanes take eight.
     let more = "[algorithm]\nplan = \"reduced\"\nkernel = \"cell\"\nfilter = { kind = \"f2\", p = 1.0 }\n\
-                estimator = \"joint\"\ngrid = 15\n[hardware]\nlanes = 64";
+                estimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]\n[hardware]\nlanes = 64";
     let text = design_text("mat", [64, 64], [28.0, 28.0], 8.0, more);
     let plan = Plan::new(&Design::from_toml(&text, "mat.toml").unwrap()).unwrap();
     let Timeline { search_cycles, interval_cycles, .. } = plan.timeline;

@@ -44,8 +44,8 @@ fn design(folder: &Path, name: &str, plan: &str, pa_per_count: f64, gains: Gains
     fs::write(folder.join("gains.csv"), lines).expect("writable");
     let text = format!(
         "format = 3\nname = \"{name}\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n\
-         pa_per_count = {pa_per_count:?}\n{calibration}[algorithm]\nplan = \"{plan}\"\n\
-         [hardware]\nlanes = 8\nfull_scale_pa = 50000.0\n"
+         pa_per_count = {pa_per_count:?}\n{calibration}[algorithm]\nestimator = \"line\"\ncount_contacts = false\nplan = \"{plan}\"\n\
+         [hardware]\nlanes = 8\nfull_scale_pa = 50000.0\nscaling = \"fixed\"\n"
     );
     let path = folder.join(format!("{name}.toml"));
     fs::write(&path, text).expect("writable");
@@ -102,8 +102,8 @@ fn curved(folder: &Path, name: &str, plan: &str, curve: &str, dead: &str) -> Des
         .expect("writable");
     let text = format!(
         "format = 3\nname = \"{name}\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n\
-         curve = {curve}\ncalibration = \"curved.csv\"\n{dead}[algorithm]\nplan = \"{plan}\"\n\
-         [hardware]\nlanes = 8\nfull_scale_pa = 50000.0\n"
+         curve = {curve}\ncalibration = \"curved.csv\"\n{dead}[algorithm]\nestimator = \"line\"\ncount_contacts = false\nplan = \"{plan}\"\n\
+         [hardware]\nlanes = 8\nfull_scale_pa = 50000.0\nscaling = \"fixed\"\n"
     );
     let path = folder.join(format!("{name}.toml"));
     fs::write(&path, text).expect("writable");

@@ -5,6 +5,7 @@ use hdl_gen::plan::Plan;
 use serde::Serialize;
 
 use super::BenchError;
+use crate::PLAIN_DESIGN;
 use golden::progress::Progress;
 use testbench::frame_set::FrameSet;
 use testbench::simulate::Cycles;
@@ -64,7 +65,7 @@ impl Kind {
             Self::Reduced => "plan = \"reduced\"",
             Self::Filtered => "plan = \"reduced\"\nfilter = { kind = \"f2\", p = 1.0 }",
             Self::Paper => "plan = \"paper\"",
-            Self::Joint => "plan = \"reduced\"\nestimator = \"joint\"",
+            Self::Joint => "plan = \"reduced\"\nestimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]",
         }
     }
 }
@@ -93,7 +94,7 @@ pub struct Point {
 pub fn square(kind: Kind, side: usize, lanes: usize) -> Result<Design, DesignError> {
     let keys = kind.keys();
     let text = format!(
-        "format = 3\nname = \"square_{side}\"\n[sensor]\ncolumns = {side}\nrows = {side}\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
+        "{PLAIN_DESIGN}name = \"square_{side}\"\n[sensor]\ncolumns = {side}\nrows = {side}\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
          [algorithm]\n{keys}\n[hardware]\nlanes = {lanes}\n"
     );
     Design::from_toml(&text, "series of square sensors")

@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::cycles::{Kind, SIDES, square};
 use super::machine::{forget_peak_memory, peak_memory};
 use super::{BenchError, Scope, median};
+use crate::PLAIN_DESIGN;
 use golden::progress::Progress;
 use testbench::trial::{TrialError, planned};
 
@@ -71,8 +72,10 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Generati
 
 /// The largest grid, with the pitch and depth of the mat in `designs/bed-mat.toml`.
 fn mat() -> Result<Design, DesignError> {
-    let text = "format = 3\nname = \"mat\"\n[sensor]\ncolumns = 64\nrows = 64\npitch_mm = [28.0, 28.0]\ndepth_mm = 8.0\n\
-                [algorithm]\nplan = \"reduced\"\nkernel = \"cell\"\nfilter = { kind = \"f2\", p = 1.0 }\n\
-                [hardware]\nlanes = 64\n";
-    Design::from_toml(text, "largest grid")
+    let text = format!(
+        "{PLAIN_DESIGN}name = \"mat\"\n[sensor]\ncolumns = 64\nrows = 64\npitch_mm = [28.0, 28.0]\ndepth_mm = 8.0\n\
+                [algorithm]\nplan = \"reduced\"\nkernel = \"cell\"\nfilter = {{ kind = \"f2\", p = 1.0 }}\n\
+                [hardware]\nlanes = 64\n"
+    );
+    Design::from_toml(&text, "largest grid")
 }

@@ -174,7 +174,8 @@ mod tests {
     fn it_is_the_f64_solver_but_for_rounding() {
         for (columns, rows) in [(10, 10), (7, 5)] {
             let text = format!(
-                "format = 3\nname = \"pad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n"
+                "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+                 name = \"pad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n"
             );
             let design = Design::from_toml(&text, "pad").expect("a design");
             let solver = Solver::new(&design).expect("a solver");

@@ -131,8 +131,8 @@ mod tests {
     use super::*;
     use crate::stress::packets::packet;
 
-    const DESIGN: &str =
-        "format = 3\nname = \"tiny\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
+    const DESIGN: &str = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+         name = \"tiny\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
 
     /// Packets, and the traffic of a core that is right, with a reset that costs two of them.
     fn right(plan: &Plan) -> (Vec<Kind>, Vec<Vec<u32>>, Outcome) {

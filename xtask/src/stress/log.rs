@@ -175,7 +175,8 @@ mod tests {
 
     use super::*;
 
-    const DESIGN: &str = "format = 3\nname = \"tiny\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
+    const DESIGN: &str = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+        name = \"tiny\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
         pa_per_count = -12.5\n[hardware]\ncontrol = true\ncalibration = \"ram\"\n";
 
     /// Six packets, two by power-up's bank, two by another one, two by what a tare made of that, of the packets before; the

@@ -7,7 +7,7 @@ use golden::design::Design;
 use tempfile::TempDir;
 
 use super::{folder_with, row};
-use crate::support::{sptfra, text, workspace};
+use crate::support::{PLAIN, sptfra, text, workspace};
 
 #[test]
 fn choose_then_solve() {
@@ -19,7 +19,7 @@ fn choose_then_solve() {
     let sensor = "[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
     fs::write(folder.path().join("scene.toml"), format!("{sensor}{scene}")).unwrap();
     let filter = "[algorithm]\nplan = \"paper\"\nfilter = { kind = \"f3\", scenes = [\"scene.toml\"] }\n";
-    fs::write(&design, format!("format = 3\nname = \"pad\"\n{sensor}{filter}")).unwrap();
+    fs::write(&design, format!("{PLAIN}name = \"pad\"\n{sensor}{filter}")).unwrap();
 
     let (_frames_folder, frames) = folder_with(&row("-900"));
     let out = folder.path().join("out.csv");
@@ -117,7 +117,12 @@ fn calibrate_then_solve() {
     fs::write(folder.path().join("gains.csv"), "1.25,-3\n".repeat(12)).unwrap();
     let sensor = "[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\npa_per_count = 2.0\n\
                   calibration = \"gains.csv\"\n";
-    fs::write(&design, format!("format = 3\nname = \"pad\"\n{sensor}[algorithm]\nestimator = \"joint\"\n")).unwrap();
+    // Without the constants, which the command fits.
+    let joint = |constants: &str| {
+        fs::write(&design, format!("{PLAIN}name = \"pad\"\n{sensor}[algorithm]\nestimator = \"joint\"\n{constants}"))
+            .unwrap();
+    };
+    joint("");
     fs::write(&frames, row("-900")).unwrap();
 
     let calibrate = |more: &[&str]| {
@@ -131,6 +136,8 @@ fn calibrate_then_solve() {
     assert!(written.contains("seed 9") && written.contains("\nfile = \"resolved.weights.csv\"\n"), "{written}");
     let weights = resolved.with_file_name("resolved.weights.csv");
     assert_eq!(fs::read_to_string(&weights).unwrap().lines().count(), 4, "a header and three hidden units");
+    assert!(Design::load(&design).unwrap_err().to_string().contains("algorithm.gain is missing"));
+    joint("gain = 1\nfriction_correction = [1, 0]\n");
     let before = Design::load(&design).unwrap();
     let Design { algorithm, input, .. } = Design::load(&resolved).unwrap();
     assert_eq!(input, before.input, "the file of gains is there too");
@@ -171,9 +178,9 @@ fn one_command_fits_the_constants_to_a_changed_sensor() {
     let folder = TempDir::new().unwrap();
     let [pad, fitted] = ["pad.toml", "pad-calibrated.toml"].map(|name| folder.path().join(name));
     let sensor = "[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
-    let stale = "[algorithm]\nestimator = \"joint\"\ngain = 1.1\n\
+    let stale = "[algorithm]\nestimator = \"joint\"\ngain = 1.1\nfriction_correction = [1, 0]\n\
         calibrated_for = \"6 x 5 taxels of 4 x 2 mm, 3 mm deep, point, 0, noise 0.005, sliding\"\n";
-    fs::write(&pad, format!("format = 3\nname = \"pad\"\n{sensor}{stale}")).unwrap();
+    fs::write(&pad, format!("{PLAIN}name = \"pad\"\n{sensor}{stale}")).unwrap();
     let frames = folder.path().join("f.csv");
     let output = sptfra(&["scene", "--design", text(&pad), "--out", text(&frames)]);
     let said = String::from_utf8(output.stderr).unwrap();

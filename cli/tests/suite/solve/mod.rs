@@ -11,7 +11,7 @@ use golden::frames::{read_frames, write_frames};
 use golden::sensor::Sensor;
 use tempfile::TempDir;
 
-use crate::support::{sptfra, text, workspace};
+use crate::support::{PLAIN, sptfra, text, workspace};
 
 /// A folder with a frame file for the small design.
 fn folder_with(frames: &str) -> (TempDir, PathBuf) {
@@ -40,7 +40,7 @@ fn a_layer_that_is_too_thin_is_told_of() {
     let [design, forces] = ["thin.toml", "out.csv"].map(|name| folder.path().join(name));
     for (depth, told) in [("1.2", true), ("3.0", false)] {
         let sensor = format!("[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = {depth}\n");
-        fs::write(&design, format!("format = 3\nname = \"thin\"\n{sensor}")).unwrap();
+        fs::write(&design, format!("{PLAIN}name = \"thin\"\n{sensor}")).unwrap();
         let output = sptfra(&["solve", text(&design), "--frames", text(&frames), "--out", text(&forces)]);
         let said = String::from_utf8(output.stderr).unwrap();
         assert_eq!(said.contains("warning: the layer is 0.30 of a pitch thin"), told, "{said}");
@@ -158,8 +158,8 @@ fn frames_for_a_design_and_for_no_other() {
     let sensor = "[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
     let [pad, other, frames, forces] =
         ["pad.toml", "other.toml", "push.csv", "forces.csv"].map(|name| folder.path().join(name));
-    fs::write(&pad, format!("format = 3\nname = \"pad\"\n{sensor}pa_per_count = -2.0\n")).unwrap();
-    fs::write(&other, format!("format = 3\nname = \"other\"\n{}", sensor.replace("4.0, 4.0", "4.0, 2.0"))).unwrap();
+    fs::write(&pad, format!("{PLAIN}name = \"pad\"\n{sensor}pa_per_count = -2.0\n")).unwrap();
+    fs::write(&other, format!("{PLAIN}name = \"other\"\n{}", sensor.replace("4.0, 4.0", "4.0, 2.0"))).unwrap();
     // The ending of a design may be left out.
     let output = sptfra(&["scene", "--design", text(&pad.with_extension("")), "--out", text(&frames), "--json"]);
     assert!(output.status.success(), "{output:?}");

@@ -117,8 +117,9 @@ mod tests {
 
     #[test]
     fn the_weights_are_the_derivative_of_the_normal_force() {
-        let text = "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\ndead = [14]\n\
-                    [algorithm]\nestimator = \"joint\"\ngain = 1.1\n";
+        let text = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+            name = \"pad\"\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\ndead = [14]\n\
+                    [algorithm]\nestimator = \"joint\"\ngain = 1.1\nfriction_correction = [1, 0]\n";
         let design = Design::from_toml(text, "pad.toml").expect("a design");
         let mut rows = Rows::new(&design).expect("matrices");
         let pressing: Vec<f64> = (0..30)

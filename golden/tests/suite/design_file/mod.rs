@@ -9,10 +9,14 @@ mod weights;
 
 use std::path::Path;
 
-use golden::design::{Design, Filter, Optimise, Outputs, PlanKind};
+use golden::design::{Design, Estimator, Filter, Kernel, Optimise, Outputs, PlanKind, Regularisation, Scaling};
 
-const MINIMAL: &str =
+/// Nothing but what every design must say.
+const BARE: &str =
     "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 10\nrows = 8\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n";
+/// The same by the line estimator, which needs no constants.
+const MINIMAL: &str = "format = 3\nbase = \"tests/plain.toml\"\nname = \"pad\"\n[sensor]\ncolumns = 10\nrows = 8\n\
+    pitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n";
 
 fn message(text: &str) -> String {
     Design::from_toml(text, "pad.toml").expect_err("the file is wrong").to_string()
@@ -36,14 +40,50 @@ fn refused(text: &str, parts: &[&str]) {
 
 #[test]
 fn everything_but_name_and_sensor_has_a_default() {
-    let design = Design::from_toml(MINIMAL, "pad.toml").unwrap();
+    let text = format!("{BARE}[algorithm]\ngain = 1.1\nfriction_correction = [0.9, -0.1]\n");
+    let design = Design::from_toml(&text, "pad.toml").unwrap();
     assert_eq!(design.algorithm.filter, Filter::None);
+    assert_eq!((design.algorithm.estimator, design.algorithm.kernel), (Estimator::Joint, Kernel::Point));
+    assert!(design.algorithm.count_contacts && design.hardware.scaling == Scaling::PerFrame);
     assert_eq!(design.algorithm.noise_floor_pa, 100_000.0 / 65536.0);
     assert_eq!((design.hardware.coefficient_bits, design.hardware.data_bits, design.hardware.lanes), (18, 27, 16));
     assert_eq!(design.hardware.part, "xczu9eg-ffvb1156-2-e");
     assert_eq!((design.algorithm.plan, design.algorithm.outputs), (PlanKind::Reduced, Outputs::Field));
     assert_eq!(design.hardware.optimise, Optimise::Throughput);
     assert_eq!(design.hardware.stream_bits, 32);
+}
+
+/// Fitted constants have no default: the refusal names the command that fits them.
+#[test]
+fn a_design_without_its_constants_is_refused() {
+    for (given, missing) in [("friction_correction = [1, 0]", "gain"), ("gain = 1.1", "friction_correction")] {
+        refused(
+            &format!("{BARE}[algorithm]\n{given}\n"),
+            &[&format!("algorithm.{missing} is missing"), "`sptfra calibrate pad.toml --out pad-calibrated.toml`"],
+        );
+    }
+}
+
+/// Kernel and regularisation follow the depth, and the resolved design says which they are.
+#[test]
+fn kernel_and_regularisation_follow_the_depth() {
+    for (depth, kernel, regularisation) in [
+        ("1.9", Kernel::Cell, Regularisation::None),
+        ("3.0", Kernel::Point, Regularisation::None),
+        ("3.1", Kernel::Point, Regularisation::Noise { noise: 0.002 }),
+    ] {
+        let text = |keys: &str| {
+            let depth = BARE.replace("depth_mm = 3.0", &format!("depth_mm = {depth}"));
+            format!("{depth}[algorithm]\nestimator = \"line\"\n{keys}\n")
+        };
+        let usual = Design::from_toml(&text(""), "pad.toml").unwrap();
+        assert_eq!((usual.algorithm.kernel, usual.algorithm.regularisation), (kernel, regularisation), "{depth}");
+        let other = Design::from_toml(&text("kernel = \"point\"\nregularisation = 0"), "pad.toml").unwrap();
+        assert_eq!((other.algorithm.kernel, other.algorithm.regularisation), (Kernel::Point, Regularisation::None));
+        for design in [usual, other] {
+            assert_eq!(Design::from_toml(&design.to_toml(), "resolved").unwrap(), design);
+        }
+    }
 }
 
 #[test]
@@ -59,11 +99,12 @@ fn a_register_bank_is_asked_for() {
 #[test]
 fn several_contacts_are_asked_for() {
     let of = |text: &str| Design::from_toml(&format!("{MINIMAL}[algorithm]\n{text}\n"), "pad.toml").unwrap();
-    assert_eq!(of("contacts = 1").to_toml(), Design::from_toml(MINIMAL, "pad.toml").unwrap().to_toml());
+    let alone = Design::from_toml(MINIMAL, "pad.toml").unwrap().to_toml();
+    assert_eq!(of("contacts = 1").to_toml(), alone);
     let counting = of("count_contacts = true");
     assert!(counting.algorithm.count_contacts && counting.to_toml().contains("\ncount_contacts = true\n"));
     assert_eq!(Design::from_toml(&counting.to_toml(), "pad.toml").unwrap(), counting);
-    assert_eq!(of("count_contacts = false").to_toml(), Design::from_toml(MINIMAL, "pad.toml").unwrap().to_toml());
+    assert_eq!(of("count_contacts = false").to_toml(), alone);
     let several = of("contacts = 8");
     assert!(several.algorithm.contacts == 8 && several.to_toml().contains("\ncontacts = 8\n"));
     assert_eq!(Design::from_toml(&several.to_toml(), "pad.toml").unwrap(), several);
@@ -97,7 +138,7 @@ fn keys_of_the_reduced_plan_read_back_the_same() {
         ("[hardware]\noptimise = \"latency\"", ["optimise = \"latency\"", "plan = \"reduced\""]),
         ("[algorithm]\nplan = \"paper\"", ["plan = \"paper\"", "optimise = \"throughput\""]),
         (
-            "[algorithm]\nestimator = \"joint\"\n[hardware]\noptimise = \"area\"",
+            "[algorithm]\nestimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]\n[hardware]\noptimise = \"area\"",
             ["optimise = \"area\"", "plan = \"reduced\""],
         ),
         ("[hardware]\nstream_bits = 64", ["stream_bits = 64\n", "plan = \"reduced\""]),

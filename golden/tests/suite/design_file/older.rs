@@ -2,7 +2,7 @@
 
 use golden::design::{Design, Scaling};
 
-use super::{MINIMAL, message, refused};
+use super::{BARE, MINIMAL, message, refused};
 
 /// A file of format 2 with every key that has another form now.
 const OLD: &str = "name = \"pad\"\n[sensor]\ncolumns = 10\nrows = 8\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\ndead = [44]\n\
@@ -45,7 +45,7 @@ fn an_older_file_is_refused_with_each_key_to_change() {
 #[test]
 fn a_base_gives_what_a_file_leaves_out() {
     let base = format!(
-        "{MINIMAL}pa_per_count = -2.0\ncalibration = \"gains.csv\"\n[algorithm]\nplan = \"paper\"\n\
+        "{BARE}pa_per_count = -2.0\ncalibration = \"gains.csv\"\n[algorithm]\nestimator = \"line\"\nplan = \"paper\"\n\
          filter = {{ kind = \"f1\", l = 7 }}\n[hardware]\nscaling = \"per_frame\"\nlanes = 4\n"
     );
     let gains = "1,0\n".repeat(80);

@@ -63,18 +63,18 @@ fn crosstalk_and_smoothing_in_their_ranges() {
 
 #[test]
 fn unknown_and_missing_keys() {
-    refused(&with("depth_mm = 3.0", "depth_mm = 3.0\nwidth = 2"), &["width", "line 8", "depth_mm"]);
+    refused(&with("depth_mm = 3.0", "depth_mm = 3.0\nwidth = 2"), &["width", "line 9", "depth_mm"]);
     refused(&format!("{MINIMAL}[hardwear]\nlanes = 3\n"), &["hardwear", "did you mean `hardware`?"]);
-    refused(&format!("{MINIMAL}[hardware]\nlane = 3\n"), &["lane", "did you mean `lanes`?", "line 9"]);
+    refused(&format!("{MINIMAL}[hardware]\nlane = 3\n"), &["lane", "did you mean `lanes`?", "line 10"]);
     refused(&with("rows = 8\n", ""), &["rows", "missing"]);
     refused(&with("name = \"pad\"\n", ""), &["name", "missing"]);
     refused("format = 3\nname = \"pad\"\n", &["sensor", "missing"]);
-    refused(&format!("{MINIMAL}[algorithm]\nfilter = {{ kind = \"f1\", l = 4, q = 1 }}\n"), &["q", "line 9"]);
+    refused(&format!("{MINIMAL}[algorithm]\nfilter = {{ kind = \"f1\", l = 4, q = 1 }}\n"), &["q", "line 10"]);
 }
 
 #[test]
 fn wrong_types_and_broken_toml() {
-    refused(&with("columns = 10", "columns = \"ten\""), &["line 4", "columns"]);
+    refused(&with("columns = 10", "columns = \"ten\""), &["line 5", "columns"]);
     for one in ["3.4", "3"] {
         let remedy = format!("[{one}, {one}]");
         let parts = ["sensor.pitch_mm", "one number", &remedy];
@@ -83,9 +83,9 @@ fn wrong_types_and_broken_toml() {
     refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = \"3.4\""), &["pitch_mm", "two numbers"]);
     refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = [4.0]"), &["sensor.pitch_mm", "1 values", "two"]);
     refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = [4.0, 2.0, 1.0]"), &["sensor.pitch_mm", "3 values", "two"]);
-    refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = [4.0, \"2\"]"), &["line 6", "pitch_mm"]);
-    refused(&with("columns = 10", "columns = = 10"), &["line 4"]);
-    refused(&with("columns = 10", "columns = 10.5"), &["line 4", "columns", "a whole number"]);
+    refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = [4.0, \"2\"]"), &["line 7", "pitch_mm"]);
+    refused(&with("columns = 10", "columns = = 10"), &["line 5"]);
+    refused(&with("columns = 10", "columns = 10.5"), &["line 5", "columns", "a whole number"]);
 }
 
 #[test]
@@ -119,14 +119,14 @@ fn names_that_are_no_identifiers() {
 #[test]
 fn options_are_refused_with_the_list_of_allowed_ones() {
     for (line, parts) in [
-        ("kernel = \"line\"", ["kernel", "line 9", "`point` or `cell`"]),
+        ("kernel = \"line\"", ["kernel", "line 10", "`point` or `cell`"]),
         ("calibrated_for = \"x\"", ["algorithm.calibrated_for", "joint estimator", "remove what belongs"]),
         ("training_set = \"general\"\ngain = 1.1", ["algorithm.training_set", "and so do gain", "remove what belongs"]),
         ("estimator = \"joint\"\ncalibrated_for = \"x\"", ["algorithm.calibrated_for", "\"x\"", "sptfra calibrate"]),
-        ("estimator = \"point\"", ["estimator", "line 9", "`line` or `joint`"]),
-        ("outputs = \"forces\"", ["outputs", "line 9", "`field` or `resultants`"]),
-        ("plan = \"fast\"", ["plan", "line 9", "`paper` or `reduced`"]),
-        ("filter = { kind = \"f4\" }", ["kind", "line 9", "one of `none`, `f1`, `f2`, `f3`"]),
+        ("estimator = \"point\"", ["estimator", "line 10", "`line` or `joint`"]),
+        ("outputs = \"forces\"", ["outputs", "line 10", "`field` or `resultants`"]),
+        ("plan = \"fast\"", ["plan", "line 10", "`paper` or `reduced`"]),
+        ("filter = { kind = \"f4\" }", ["kind", "line 10", "one of `none`, `f1`, `f2`, `f3`"]),
         ("filter = { kind = \"f3\" }", ["algorithm.filter.scenes", "missing", "scenes = ["]),
         ("filter = { kind = \"f3\", scenes = [] }", ["algorithm.filter.scenes", "missing", "scenes = ["]),
         ("filter = { kind = \"f3\", l = 4 }", ["algorithm.filter.l", "f3", "remove"]),
@@ -152,9 +152,9 @@ fn options_are_refused_with_the_list_of_allowed_ones() {
         ("lanes = 0", ["hardware.lanes", "is 0", "1 to 128"]),
         ("stream_bits = 48", ["hardware.stream_bits", "is 48", "one of 32, 64, 128"]),
         ("lanes = 129", ["hardware.lanes", "129", "1 to 128"]),
-        ("optimise = \"speed\"", ["optimise", "line 9", "one of `throughput`, `latency`, `area`"]),
-        ("scaling = \"taxel\"", ["scaling", "line 9", "`fixed` or `per_frame`"]),
-        ("control = 1", ["control", "line 9", "boolean"]),
+        ("optimise = \"speed\"", ["optimise", "line 10", "one of `throughput`, `latency`, `area`"]),
+        ("scaling = \"taxel\"", ["scaling", "line 10", "`fixed` or `per_frame`"]),
+        ("control = 1", ["control", "line 10", "boolean"]),
         ("full_scale_pa = -1.0", ["hardware.full_scale_pa", "-1", "0"]),
         ("full_scale_pa = 1e10", ["hardware.full_scale_pa", "10000000000", "1000000000"]),
         ("clock_mhz = 0.5", ["hardware.clock_mhz", "0.5", "1 to 1000"]),

@@ -5,14 +5,14 @@
 use golden::design::{Design, Estimator, StandardError, WEIGHTS_FILE};
 use sha2::{Digest, Sha256};
 
-use super::{MINIMAL, refused};
+use super::{BARE, refused};
 
 /// Weights whose two hidden units see one taxel.
 const WEIGHTS: &str =
     "x+0y+0,mu_x,mu_y,centre_x,centre_y,one,to_x,to_y\n1,2,3,4,5,6,13,-15\n-7,8,-9,10,-11,12,14,131071\n";
 
 fn corrected(keys: &str) -> String {
-    format!("{MINIMAL}[algorithm]\nestimator = \"joint\"\n[algorithm.correction]\n{keys}")
+    format!("{BARE}[algorithm]\ngain = 1\nfriction_correction = [1, 0]\n[algorithm.correction]\n{keys}")
 }
 
 /// The keys of a correction by `weights` in the file w.csv.
@@ -80,8 +80,8 @@ fn corrections_that_contradict_themselves() {
 /// The standard error and its limit are keys of every estimator, and are read back.
 #[test]
 fn a_standard_error_goes_with_every_estimator() {
-    for estimator in ["line", "joint"] {
-        let text = |keys: &str| format!("{MINIMAL}[algorithm]\nestimator = \"{estimator}\"\n{keys}");
+    for (estimator, constants) in [("line", ""), ("joint", "gain = 1.0\nfriction_correction = [1.0, 0.0]\n")] {
+        let text = |keys: &str| format!("{BARE}[algorithm]\nestimator = \"{estimator}\"\n{constants}{keys}");
         let keys = "standard_error = { model = 0.03, noise = 120.0, border = 1.5 }\nmax_standard_error = 0.2\n";
         let design = Design::from_toml(&text(keys), "pad.toml").unwrap();
         let stated = StandardError { model: 0.03, noise: 120.0, border: 1.5 };

@@ -80,6 +80,7 @@ fn tangential_forces_tell_the_constants_of_friction() {
     // Forces the wrong way round are no friction.
     let mut turned = recording.measured.clone();
     turned.forces.iter_mut().for_each(|force| (force[0], force[1]) = (force[0].map(|x| -x), force[1].map(|y| -y)));
-    let found = fit_forces(&design("", joint), &recording.frames, &turned).unwrap();
+    let found =
+        fit_forces(&design("", &format!("{joint}friction_correction = [1, 0]")), &recording.frames, &turned).unwrap();
     assert!(says(&found.undetermined, &["friction: F_x and F_y point against"]), "{:?}", found.undetermined);
 }

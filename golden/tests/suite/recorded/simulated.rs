@@ -75,7 +75,8 @@ pub fn sensor() -> Sensor {
 /// A design for the sensor, with more keys of its `[sensor]` and `[algorithm]`.
 pub fn design(keys: &str, algorithm: &str) -> Design {
     let text = format!(
-        "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 6\nrows = 13\npitch_mm = [3.4, 3.4]\ndepth_mm = 3.0\n{keys}\n\
+        "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+         name = \"pad\"\n[sensor]\ncolumns = 6\nrows = 13\npitch_mm = [3.4, 3.4]\ndepth_mm = 3.0\n{keys}\n\
          [algorithm]\n{algorithm}\n"
     );
     Design::from_toml(&text, "pad.toml").unwrap()

@@ -16,7 +16,8 @@ const STEEP: [i64; 2] = [-(2 << FRICTION_FRACTION), (2 << FRICTION_FRACTION) - 1
 fn plan(size: [usize; 2], pitch_mm: [f64; 2], algorithm: &str, hardware: &str) -> Plan {
     let [columns, rows] = size;
     let text = format!(
-        "format = 3\nname = \"bad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = {pitch_mm:?}\ndepth_mm = 3.0\n\
+        "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+         name = \"bad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = {pitch_mm:?}\ndepth_mm = 3.0\n\
          [algorithm]\nplan = \"reduced\"\n{algorithm}\n[hardware]\n{hardware}"
     );
     Plan::new(&Design::from_toml(&text, "bad.toml").unwrap()).unwrap()

@@ -140,7 +140,8 @@ mod tests {
     use crate::plan::format::pow2;
     use golden::design::{Curve, Design};
 
-    const DESIGN: &str = "format = 3\nname = \"tiny\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
+    const DESIGN: &str = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+        name = \"tiny\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
         curve = { power = 1.5, scale = -0.5 }\n[hardware]\ncontrol = true\ncalibration = \"ram\"\n";
 
     fn format() -> (Curve, CurveFormat) {

@@ -85,7 +85,8 @@ fn answers_of_a_thin_layer_have_low_confidence() {
     for (depth, estimator, thin) in
         [(2.9, "line", true), (3.1, "line", false), (1.9, "joint", true), (2.1, "joint", false)]
     {
-        let more = format!("[algorithm]\nestimator = \"{estimator}\"");
+        let constants = if estimator == "joint" { "gain = 1\nfriction_correction = [1, 0]" } else { "" };
+        let more = format!("[algorithm]\nestimator = \"{estimator}\"\n{constants}");
         // The paper's plan has the line estimator alone.
         let kinds = if estimator == "line" { &[PlanKind::Paper, PlanKind::Reduced][..] } else { &[PlanKind::Reduced] };
         for &kind in kinds {

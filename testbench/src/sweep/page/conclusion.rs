@@ -326,8 +326,8 @@ pub(super) mod tests {
     fn filters_are_written_as_a_design_file_has_them() {
         let of = |filter: &str| keys(&Point { filter: filter.to_owned(), ..point("a", 4, 1, 1.0) });
         for filter in ["none", "f1 l=10", "f2 p=50", "f3"] {
-            let sensor =
-                "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 4\nrows = 4\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
+            let sensor = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
+                 name = \"pad\"\n[sensor]\ncolumns = 4\nrows = 4\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
             // The reduced plan does not know F3.
             let text = format!("{sensor}{}", of(filter)).replace("plan = \"reduced\"", "plan = \"paper\"");
             assert!(Design::from_toml(&text, "pad.toml").is_ok(), "{text}");

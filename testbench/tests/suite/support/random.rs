@@ -45,10 +45,13 @@ impl Kind {
             Self::Field { latency: true } => ["plan = \"reduced\"", "optimise = \"latency\""],
             Self::Field { latency: false } => ["plan = \"reduced\"", "optimise = \"throughput\""],
             Self::Resultants => ["plan = \"reduced\"\noutputs = \"resultants\"", ""],
-            Self::Joint { field: true, .. } => ["plan = \"reduced\"\nestimator = \"joint\"", ""],
-            Self::Joint { field: false, .. } => {
-                ["plan = \"reduced\"\nestimator = \"joint\"\noutputs = \"resultants\"", ""]
+            Self::Joint { field: true, .. } => {
+                ["plan = \"reduced\"\nestimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]", ""]
             }
+            Self::Joint { field: false, .. } => [
+                "plan = \"reduced\"\nestimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]\noutputs = \"resultants\"",
+                "",
+            ],
         }
     }
 }
@@ -118,7 +121,7 @@ impl Shape {
         let Self { coefficient_bits, data_bits, full_scale_pa, .. } = self;
         let [algorithm, hardware] = self.kind.keys();
         let text = format!(
-            "format = 3\nname = \"{name}\"
+            "format = 3\nbase = \"../golden/tests/plain.toml\"\nname = \"{name}\"
 [sensor]
 columns = {columns}
 rows = {rows}

@@ -9,6 +9,7 @@ use golden::scene::{Contact, Kind, Medium, Scene, SensorErrors, Shape, Traction}
 mod sensor;
 
 use super::HardError;
+use crate::PLAIN_DESIGN;
 use testbench::frame_set::FrameSet;
 
 /// Frames for one design.
@@ -63,7 +64,7 @@ const FORCE_N: f64 = 6.0;
 fn design(sensor: &Sensor, algorithm: &str) -> Result<Design, DesignError> {
     let Sensor { columns, rows, pitch_mm: [x, y], depth_mm } = sensor;
     let text = format!(
-        "format = 3\nname = \"hard\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [{x:?}, {y:?}]\n\
+        "{PLAIN_DESIGN}name = \"hard\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [{x:?}, {y:?}]\n\
          depth_mm = {depth_mm:?}\n[algorithm]\nplan = \"reduced\"\n{algorithm}\n"
     );
     Design::from_toml(&text, "hard case")
