@@ -7,6 +7,12 @@
 /// Steps of so many standard deviations restart the average. By noise alone less than one in 10⁴ frames of 100 taxels has one.
 pub const RESTART: f64 = 6.0;
 
+/// Noise of a steady average over that of a frame, with a weight of `2^-k`.
+pub fn noise_left(k: u32) -> f64 {
+    let weight = (-f64::from(k)).exp2();
+    (weight / (2.0 - weight)).sqrt()
+}
+
 /// The average of one stream of frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Average {

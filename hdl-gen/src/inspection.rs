@@ -58,6 +58,9 @@ pub fn figures(plan: &Plan) -> Value {
     if plan.design.algorithm.contacts > 1 {
         value["contacts"] = plan.design.algorithm.contacts.into();
     }
+    if let Some(expected) = plan.design.expected_error() {
+        value["expected_error"] = expected.into();
+    }
     if let Some((key, own)) = plan.estimator.slot().metadata().own {
         value[key] = own;
     }

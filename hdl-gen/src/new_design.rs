@@ -2,11 +2,8 @@
 
 use std::ops::RangeInclusive;
 
-use golden::calibrate::{CalibrateError, Settings, calibrate, standard_error};
-use golden::design::{DEFAULT_FULL_SCALE_PA, DEFAULT_NOISE, Design, DesignError, Estimator, Input, Samples, Tension};
-use golden::metrics::Quantiles;
-use golden::scene::{Kind, SceneFrame};
-use golden::solver::Solver;
+use golden::calibrate::{CalibrateError, Settings, calibrate, state_errors};
+use golden::design::{DEFAULT_FULL_SCALE_PA, DEFAULT_NOISE, Design, DesignError, Estimator, Samples, Tension};
 
 /// Digits of fitted constants: no processor rounds four otherwise, and no contact shows more.
 const DIGITS: f64 = 1e4;
@@ -71,30 +68,6 @@ pub enum NewDesignError {
     Calibrate(#[from] CalibrateError),
 }
 
-/// Contacts that [`errors`] tries.
-pub const TRIED: u64 = 40;
-/// Their friction.
-const FRICTION: f64 = 0.5;
-/// The first of their seeds: those of the fit's contacts are others.
-const FIRST_SEED: u64 = 5000;
-
-/// Errors along the surface, in percent of the normal force, on [`TRIED`] round contacts at random that slide with a
-/// friction of 0.5 on a bonded layer (`Kind::Sliding`), which no constants were fitted to; `None` on a sensor for which there
-/// are no such frames.
-pub fn errors(design: &Design) -> Option<Quantiles> {
-    let frames = Kind::Sliding.frames(&design.sensor, FRICTION, FIRST_SEED..FIRST_SEED + TRIED).ok()?;
-    // In pascals, whatever the sensor counts and wherever its range ends.
-    let tension = design.input.tension;
-    let solver = Solver::new(&Design { input: Input { tension, ..Input::default() }, ..design.clone() }).ok()?;
-    let error = |frame: &SceneFrame| {
-        let read: Vec<f64> = frame.stress.iter().map(|&stress| tension.of(stress)).collect();
-        let found = solver.solve(&read).ok()?;
-        let [x, y] = [0, 1].map(|axis| found.resultant[axis] - frame.force[axis]);
-        Some(100.0 * x.hypot(y) / frame.force[2].abs())
-    };
-    Some(Quantiles::of(frames.iter().map(error).collect::<Option<_>>()?))
-}
-
 /// The integers that hold counts of so many bits: with a sign, which a tare needs, where there is room for one; float32
 /// for wider ones.
 fn samples(bits: u32) -> Samples {
@@ -129,8 +102,8 @@ impl NewDesign {
             (found.gain, found.friction_correction) = (gain, [c1, c3]);
             *design.algorithm.joint = found;
         }
-        stage("fitting the standard error to contacts of all kinds");
-        design.algorithm.standard_error = Some(standard_error(&design, Settings::constants().seed, &mut |_| ())?);
+        stage("finding the errors of contacts of all kinds");
+        state_errors(&mut design, Settings::constants().seed, &mut |_| ())?;
         let text = design.to_commented_toml();
         Design::from_toml(&text, "sptfra new")?;
         Ok(text)

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use golden::calibrate::{CalibrateError, ERROR_FRAMES, Work, calibrate as fit, standard_error};
+use golden::calibrate::{CalibrateError, ERROR_FRAMES, Work, calibrate as fit, state_errors};
 use golden::design::{Design as Checked, Estimator, TrainingSet};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -50,7 +50,7 @@ pub fn calibrate(
         if has_constants {
             *design.algorithm.joint = fit(&design, &settings, &mut tick)?;
         }
-        design.algorithm.standard_error = Some(standard_error(&design, seed, &mut tick)?);
+        state_errors(&mut design, seed, &mut tick)?;
         Ok::<_, CalibrateError>(design)
     })?;
     named_anew(design, name)

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use golden::calibrate::{ERROR_FRAMES, Work, calibrate, standard_error};
+use golden::calibrate::{ERROR_FRAMES, Work, calibrate, state_errors};
 use golden::choose::rebase_scenes;
 use golden::design::{Design, Estimator, Filter, StandardError, TrainingSet, is_name};
 use golden::output::write_together;
@@ -21,7 +21,7 @@ FORCES.csv: one line a frame; a header with units, such as F_x (N),F_y (N),F_z (
 unknown. F_z or weights alone will do: weight (g). A column contact or place names what belongs together. Frames without
 load, with the force 0, give the offsets. PRESSURES.csv: pressure (kPa), one line a frame.
 
-RESOLVED.toml is the design with the fitted keys, among them standard_error, gain, friction_correction, calibrated_for
+RESOLVED.toml is the design with the fitted keys, among them standard_error, expected_error, gain, friction_correction, calibrated_for
 and correction. The
 network's weights stand beside it, in RESOLVED.weights.csv. `sptfra new --schema` explains each key.";
 
@@ -29,8 +29,8 @@ network's weights stand beside it, in RESOLVED.weights.csv. `sptfra new --schema
 ///
 /// Without --frames and --uniform: the standard error, and the constants of the grid search (`estimator = "joint"`).
 /// Makes random contacts on a bonded layer, from the seed alone. Fits to their known forces a gain, two constants of the
-/// friction, and the weights of the correction, then the three numbers of the standard error. The weights go
-/// to RESOLVED.weights.csv beside RESOLVED.toml: both are written, or none.
+/// friction, and the weights of the correction, then the standard error
+/// and the error to be expected by noise. The weights go to RESOLVED.weights.csv beside RESOLVED.toml: both are written, or none.
 ///
 /// With --frames and --forces: the scale of a count (a curve, a gain for all taxels, and the taxels' own), and the
 /// constants of friction where tangential forces are known. Reports what the recording determines, with errors at places
@@ -76,7 +76,8 @@ struct Report<'a> {
     friction_correction: [f64; 2],
     half_window: Option<[usize; 2]>,
     weights: usize,
-    standard_error: StandardError,
+    standard_error: Option<StandardError>,
+    expected_error: Option<String>,
 }
 
 /// Calibrates a design and writes the resolved one.
@@ -104,8 +105,7 @@ pub fn run(args: &Args) -> message::Result {
     if has_constants {
         *design.algorithm.joint = calibrate(&design, &settings, &mut |_| progress.step())?;
     }
-    let error = standard_error(&design, settings.seed, &mut |_| progress.step())?;
-    design.algorithm.standard_error = Some(error);
+    state_errors(&mut design, settings.seed, &mut |_| progress.step())?;
     drop(progress);
     if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
         *scenes = rebase_scenes(scenes, folder(path), folder(out));
@@ -122,7 +122,8 @@ pub fn run(args: &Args) -> message::Result {
         gain: constants.gain,
         friction_correction: constants.friction_correction,
         half_window: correction.map(|correction| correction.half_window),
-        standard_error: error,
+        standard_error: design.algorithm.standard_error,
+        expected_error: design.expected_error(),
         weights: correction.map_or(0, |found| found.hidden.iter().chain(&found.output).map(Vec::len).sum()),
     };
     let text = |report: &Report<'_>| {
@@ -140,8 +141,12 @@ pub fn run(args: &Args) -> message::Result {
         if let Some([x, y]) = report.half_window {
             say!(text, "  correction  {} weights, window {} x {} taxels", report.weights, 2 * x + 1, 2 * y + 1);
         }
-        let StandardError { model, noise, border } = report.standard_error;
-        say!(text, "  standard error  model {model}, noise {noise}, border {border}");
+        if let Some(StandardError { model, noise, border }) = report.standard_error {
+            say!(text, "  standard error  model {model}, noise {noise}, border {border}");
+        }
+        if let Some(expected) = &report.expected_error {
+            say!(text, "{expected}");
+        }
         text
     };
     Ok(json_or(&report, *json, text)?.into())

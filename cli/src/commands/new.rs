@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 
 use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Estimator, Tension, design_schema};
 use golden::kernel::Kernel;
-use golden::metrics::Quantiles;
-use hdl_gen::new_design::{self, COUNT_BITS, NewDesign};
+use hdl_gen::new_design::{COUNT_BITS, NewDesign};
 
 use golden::progress::Progress;
 
@@ -171,11 +170,11 @@ pub fn run(new: &Args) -> Result<String, Box<dyn Error>> {
     file.write_all(text.as_bytes()).map_err(failed)?;
     file.persist_noclobber(&path).map_err(|error| failed(error.error))?;
     let design = Design::from_toml(&text, "sptfra new")?;
-    Ok(lines(new, &design, &path, progress).join("\n") + "\n")
+    Ok(lines(new, &design, &path).join("\n") + "\n")
 }
 
 /// What to tell of a new design at `path`.
-fn lines(new: &Args, design: &Design, path: &Path, progress: &Progress) -> Vec<String> {
+fn lines(new: &Args, design: &Design, path: &Path) -> Vec<String> {
     let shown = path.display();
     let mut next = vec![
         (format!("sptfra check {shown} --frames FRAMES"), "is anything wrong with a recording?"),
@@ -191,16 +190,9 @@ fn lines(new: &Args, design: &Design, path: &Path, progress: &Progress) -> Vec<S
     let widest = next.iter().map(|(command, _)| command.len()).max().unwrap_or(0);
     let mut lines = vec![format!("{shown}: {}; edit it, then run", design.sensor)];
     lines.extend(next.iter().map(|(command, what)| format!("  {command:<widest$}  {what}")));
+    lines.extend(design.expected_error());
     if is_joint {
-        progress.stage("trying it on other contacts");
-        let errors = new_design::errors(design).map(|Quantiles { median, most, .. }| {
-            format!(
-                " On {} round sliding contacts the\n\
-                 tangential force has a median error of {median:.1} % of the normal force (95 %: {most:.1}).",
-                new_design::TRIED
-            )
-        });
-        lines.push(format!("Gain and friction are fitted to this sensor.{}", errors.unwrap_or_default()));
+        lines.push("Gain and friction are fitted to this sensor.".to_owned());
         let trains = "sptfra calibrate trains a network that corrects the remaining error";
         // General contacts were tried on points only.
         lines.push(if design.algorithm.kernel == Kernel::Point {

@@ -31,6 +31,9 @@ struct Report<'a> {
     /// The noise over the largest reading of a typical contact.
     #[serde(skip_serializing_if = "Option::is_none")]
     noise_of_contacts: Option<f64>,
+    /// At this noise, or the design's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    expected_error: Option<String>,
 }
 
 /// Reports what each taxel reads at rest, and writes the calibration that takes it off.
@@ -56,8 +59,15 @@ pub fn run(
     }
     let noise_of_contacts = loaded.map(|loaded| share(design, &rest, loaded)).transpose()?;
     let beyond = beyond(design, frames);
-    let report =
-        Report { design: &design.name, frames: frames.len(), rest: &rest, beyond, calibration: out, noise_of_contacts };
+    let report = Report {
+        design: &design.name,
+        frames: frames.len(),
+        rest: &rest,
+        beyond,
+        calibration: out,
+        noise_of_contacts,
+        expected_error: design.expected_error_at(noise_of_contacts.unwrap_or(design.input.noise)),
+    };
     if json {
         return Ok((serde_json::to_string_pretty(&report)? + "\n").into());
     }
@@ -86,6 +96,9 @@ pub fn run(
             shown(rest.noise_of_full_scale)
         ),
         None => (),
+    }
+    if let Some(expected) = &report.expected_error {
+        say!(text, "{expected}");
     }
     say!(text, "[algorithm] noise_floor_pa = {:.1}  # three standard deviations", ceil(rest.noise_floor_pa));
     if rest.noise_of_full_scale > 0.0 {

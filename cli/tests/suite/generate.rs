@@ -126,12 +126,14 @@ fn the_new_designs_values_are_the_defaults() {
     let line = new_design(&["--estimator", "line"]);
     assert!(line.algorithm.standard_error.is_some());
     defaults.algorithm.standard_error = line.algorithm.standard_error;
+    defaults.algorithm.expected_error.clone_from(&line.algorithm.expected_error);
     assert_eq!(line, defaults);
     // And for the estimator, which is the better one.
     let mut joint = new_design(&[]);
     assert_eq!(joint.algorithm.estimator, Estimator::Joint);
     (joint.algorithm.estimator, joint.algorithm.joint) = (Estimator::Line, defaults.algorithm.joint.clone());
     joint.algorithm.standard_error = defaults.algorithm.standard_error;
+    joint.algorithm.expected_error.clone_from(&defaults.algorithm.expected_error);
     assert_eq!(joint, defaults);
 }
 

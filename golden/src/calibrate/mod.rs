@@ -15,7 +15,7 @@ mod twins;
 mod work;
 
 pub use contacts::random_contacts;
-pub use standard_error::{ERROR_FRAMES, standard_error};
+pub use standard_error::{ERROR_FRAMES, state_errors};
 pub use work::Work;
 
 use crate::design::{Design, Estimator, Input, JointConstants, conditions};

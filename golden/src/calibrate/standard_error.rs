@@ -1,11 +1,12 @@
-//! The three numbers of a design's standard error, fitted to contacts of every kind, on which nothing else was trained.
+//! The standard error and the expected error of a design, by contacts of every kind, on which nothing else was trained.
 
 use rayon::prelude::*;
 
 use super::samples::stream;
 use super::{CalibrateError, Stage};
-use crate::design::{Design, Input, StandardError};
+use crate::design::{Design, ExpectedError, Input, StandardError};
 use crate::estimators::standard_error::Marks;
+use crate::metrics::Quantiles;
 use crate::scene::{Kind, normal};
 use crate::solver::{Solver, Status};
 
@@ -31,6 +32,10 @@ const HALVINGS: i32 = 10;
 /// Significant digits that are written.
 const DIGITS: i32 = 4;
 
+/// Noises of the expected error, and digits that are written of it.
+const EXPECTED_NOISES: [f64; 5] = [0.0, 0.002, 0.005, 0.01, 0.02];
+const EXPECTED_DIGITS: i32 = 3;
+
 /// One frame's error and what it depends on.
 struct Frame {
     error: f64,
@@ -38,24 +43,43 @@ struct Frame {
     marks: Marks,
 }
 
-/// Fits the standard error of a design, whatever its estimator; `tick` is called after each frame.
+/// What one contact tells: of the frame for the standard error, and, inside the grid, the errors by noise.
+struct Contact {
+    frame: Option<Frame>,
+    errors: Vec<Option<f64>>,
+}
+
+/// Finds the standard error and the expected error of a design, whatever its estimator; `tick` is called after each
+/// contact.
 ///
 /// # Errors
 ///
 /// [`CalibrateError`]: a sensor without matrices, or no frame with an answer.
-pub fn standard_error(
-    design: &Design,
-    seed: u64,
-    tick: &mut dyn FnMut(Stage),
-) -> Result<StandardError, CalibrateError> {
-    let frames = frames(design, seed, tick)?;
-    if frames.is_empty() {
+pub fn state_errors(design: &mut Design, seed: u64, tick: &mut dyn FnMut(Stage)) -> Result<(), CalibrateError> {
+    let contacts = contacts(design, seed, tick)?;
+    let of_noise = |at: usize| -> Vec<f64> {
+        contacts
+            .iter()
+            .filter_map(|contact| contact.errors.get(at).copied().flatten())
+            .map(|error| 100.0 * error)
+            .collect()
+    };
+    let by_noise: Vec<Quantiles> = (0..EXPECTED_NOISES.len()).map(|at| Quantiles::of(of_noise(at))).collect();
+    let frames: Vec<Frame> = contacts.into_iter().filter_map(|contact| contact.frame).collect();
+    if frames.is_empty() || by_noise.iter().any(|errors| errors.median.is_nan()) {
         return Err(CalibrateError::NoAnswer { name: design.name.clone(), samples: ERROR_FRAMES });
     }
-    Ok(fit(&frames))
+    design.algorithm.standard_error = Some(fit(&frames));
+    let row = |of: fn(&Quantiles) -> f64| by_noise.iter().map(|errors| rounded(of(errors), EXPECTED_DIGITS)).collect();
+    design.algorithm.expected_error = Some(ExpectedError {
+        noise: EXPECTED_NOISES.to_vec(),
+        median: row(|errors| errors.median),
+        p95: row(|errors| errors.most),
+    });
+    Ok(())
 }
 
-fn frames(design: &Design, seed: u64, tick: &mut dyn FnMut(Stage)) -> Result<Vec<Frame>, CalibrateError> {
+fn contacts(design: &Design, seed: u64, tick: &mut dyn FnMut(Stage)) -> Result<Vec<Contact>, CalibrateError> {
     let Input { tension, noise, .. } = design.input;
     // The contacts are in pascals, whatever the sensor counts.
     let design = &Design { input: Input { tension, noise, ..Input::default() }, ..design.clone() };
@@ -64,35 +88,45 @@ fn frames(design: &Design, seed: u64, tick: &mut dyn FnMut(Stage)) -> Result<Vec
     // Noise is added to every kind here.
     let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(|&kind| kind != Kind::Noisy).collect();
     let largest = 0.5 * design.hardware.full_scale_pa;
-    let frame = |index: usize| -> Result<Option<Frame>, CalibrateError> {
+    let contact = |index: usize| -> Result<Contact, CalibrateError> {
         let (kind, round) = (kinds[index % kinds.len()], index / kinds.len());
         let mut random = stream(seed, FIRST_STREAM + index as u64);
         let seeded = FIRST_SEED + (seed << 20) + index as u64;
         let scene = kind.frame(&design.sensor, FRICTIONS[round % FRICTIONS.len()], seeded)?;
-        let share = NOISES[round % NOISES.len()] * noise.max(LEAST_NOISE);
         let peak = scene.stress.iter().fold(0.0_f64, |peak, stress| peak.max(tension.of(*stress).abs()));
         // Neither the full scale nor the noise floor matters to a frame in between.
         let scale = largest / peak;
-        let noisy = scene.stress.iter().map(|stress| tension.of(scale * (stress + share * peak * normal(&mut random))));
-        let frame: Vec<f64> = noisy.collect();
-        let found = solver.solve(&frame)?;
-        if found.status.contains(Status::NO_CONTACT) || found.status.contains(Status::DIRECTION_UNKNOWN) {
-            return Ok(None);
-        }
-        let [x, y] = [0, 1].map(|axis| found.resultant[axis] - scale * scene.force[axis]);
-        let error = x.hypot(y) / found.resultant[2].abs();
-        Ok(Some(Frame { error, noise: share, marks: Marks::of(&frame, columns) }))
+        let unit: Vec<f64> = scene.stress.iter().map(|_| normal(&mut random)).collect();
+        let frame = |noise: f64| -> Result<Option<Frame>, CalibrateError> {
+            let noisy = scene.stress.iter().zip(&unit);
+            let frame: Vec<f64> =
+                noisy.map(|(stress, unit)| tension.of(scale * (stress + noise * peak * unit))).collect();
+            let found = solver.solve(&frame)?;
+            if found.status.contains(Status::NO_CONTACT) || found.status.contains(Status::DIRECTION_UNKNOWN) {
+                return Ok(None);
+            }
+            let [x, y] = [0, 1].map(|axis| found.resultant[axis] - scale * scene.force[axis]);
+            let error = x.hypot(y) / found.resultant[2].abs();
+            Ok(Some(Frame { error, noise, marks: Marks::of(&frame, columns) }))
+        };
+        let inside = !matches!(kind, Kind::Border | Kind::Mixed);
+        let expected = if inside { &EXPECTED_NOISES[..] } else { &[] };
+        let error = |&noise: &f64| Ok::<_, CalibrateError>(frame(noise)?.map(|frame| frame.error));
+        Ok(Contact {
+            frame: frame(NOISES[round % NOISES.len()] * noise.max(LEAST_NOISE))?,
+            errors: expected.iter().map(error).collect::<Result<_, _>>()?,
+        })
     };
-    let mut frames = Vec::with_capacity(ERROR_FRAMES);
+    let mut contacts = Vec::with_capacity(ERROR_FRAMES);
     for round in 0..ERROR_FRAMES / kinds.len() {
         let indices = round * kinds.len()..(round + 1) * kinds.len();
-        let found: Vec<Option<Frame>> = indices.into_par_iter().map(frame).collect::<Result<_, _>>()?;
+        let found: Vec<Contact> = indices.into_par_iter().map(contact).collect::<Result<_, _>>()?;
         for _ in 0..found.len() {
             tick(Stage::Sample);
         }
-        frames.extend(found.into_iter().flatten());
+        contacts.extend(found);
     }
-    Ok(frames)
+    Ok(contacts)
 }
 
 /// The numbers under which the errors, as normal in the plane, are most likely.
@@ -124,12 +158,12 @@ fn fit(frames: &[Frame]) -> StandardError {
             }
         }
     }
-    made(best.map(rounded))
+    made(best.map(|number| rounded(number, DIGITS)))
 }
 
-/// To the digits that are written.
-fn rounded(value: f64) -> f64 {
-    let digits = DIGITS - 1 - value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
+/// To so many significant digits.
+fn rounded(value: f64, digits: i32) -> f64 {
+    let digits = digits - 1 - value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
     let scale = 10_f64.powi(digits.abs());
     if digits >= 0 { (value * scale).round() / scale } else { (value / scale).round() * scale }
 }
@@ -155,6 +189,6 @@ mod tests {
         let found = fit(&frames);
         let ratios = [found.model / of.model, found.noise / of.noise, found.border / of.border];
         assert!(ratios.iter().all(|ratio| (0.93..1.07).contains(ratio)), "{found:?}");
-        assert!((rounded(0.023_456) - 0.023_46).abs() < 1e-12 && (rounded(118.049) - 118.0).abs() < 1e-12);
+        assert!((rounded(0.023_456, 4) - 0.023_46).abs() < 1e-12 && (rounded(118.049, 4) - 118.0).abs() < 1e-12);
     }
 }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Filter, Regularisation};
+use super::{ExpectedError, Filter, Regularisation};
 use crate::estimators::joint::JointConstants;
 use crate::estimators::{Constants, Estimator, StandardError};
 use crate::kernel::Kernel;
@@ -53,6 +53,8 @@ pub struct Algorithm {
     pub standard_error: Option<StandardError>,
     /// A frame whose standard error is a larger share of the normal force has low confidence.
     pub max_standard_error: f64,
+    /// The error of the tangential force by noise, if it was found.
+    pub expected_error: Option<ExpectedError>,
     /// Most bodies that are told apart, 1 to [`crate::bodies::MOST`]; with 1 a frame is solved as that of one body.
     pub contacts: usize,
     /// Whether the contacts of a frame are counted where it is solved as that of one, so that a frame of more says so.

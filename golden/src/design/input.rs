@@ -11,6 +11,7 @@ use super::files::Beside;
 use super::hardware::Hardware;
 use super::keys::{DeadKey, SensorKeys};
 use super::rules;
+use crate::smoothing::noise_left;
 use crate::words::print_as_words;
 
 /// Standard deviation of a reading's noise where a design names none, as a share of the frame's largest reading.
@@ -116,8 +117,7 @@ impl Input {
 
     /// Standard deviation of the noise that is left in a steady average, as a share of the frame's largest reading.
     pub fn averaged_noise(&self) -> f64 {
-        let weight = (-f64::from(self.smoothing)).exp2();
-        self.noise * (weight / (2.0 - weight)).sqrt()
+        self.noise * noise_left(self.smoothing)
     }
 
     /// The input of the same sensor whose frames are in pascals, one by one: what gains and curve have made of counts.

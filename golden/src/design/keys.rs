@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{DEFAULT_NOISE, FilterKind, Hardware, MAX_SIDE, Outputs, PlanKind, Regularisation, Slip};
+use super::{DEFAULT_NOISE, ExpectedError, FilterKind, Hardware, MAX_SIDE, Outputs, PlanKind, Regularisation, Slip};
 use super::{Tension, TrainingSet};
 use crate::bodies;
 use crate::estimators::{Estimator, StandardError};
@@ -158,6 +158,10 @@ pub(super) struct AlgorithmKeys {
     /// Standard error, as a share of the normal force, above which a frame has `low_confidence`; 0.1 without the key.
     #[schemars(range(min = 0.001, max = 3.9), extend("examples" = [0.1]))]
     pub max_standard_error: Option<f64>,
+    /// Error of the tangential force by noise, on contacts inside the grid that nothing was fitted to. `sptfra calibrate`
+    /// finds it. Without the key a design states none.
+    #[schemars(extend("examples" = [{"noise": [0.0, 0.01], "median": [1.5, 6.0], "p95": [4.0, 13.0]}]))]
+    pub expected_error: Option<ExpectedError>,
     /// Sensor and method that the constants were fitted for. `sptfra calibrate` writes it; any other design is refused.
     #[schemars(extend("examples" = ["10 x 10 taxels of 4 x 2 mm, 3 mm deep, point, 0, noise 0.005, sliding"]))]
     pub calibrated_for: Option<String>,
@@ -197,6 +201,7 @@ impl Default for AlgorithmKeys {
             training_set: None,
             standard_error: None,
             max_standard_error: None,
+            expected_error: None,
             calibrated_for: None,
             gain: None,
             friction_correction: None,

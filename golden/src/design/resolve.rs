@@ -32,7 +32,7 @@ pub(super) fn design(keys: DesignKeys, origin: &str, beside: Beside<'_>) -> Resu
 
 /// Keys without constants that were fitted to the sensor.
 pub(super) fn unfitted(mut keys: DesignKeys) -> DesignKeys {
-    keys.algorithm.standard_error = None;
+    (keys.algorithm.standard_error, keys.algorithm.expected_error) = (None, None);
     // Of another estimator they stay, to be refused.
     if keys.algorithm.estimator == Estimator::Joint {
         let AlgorithmKeys { gain, friction_correction, correction, calibrated_for, .. } = &mut keys.algorithm;
@@ -74,6 +74,7 @@ fn algorithm(
         joint: Box::new(joint),
         standard_error: keys.standard_error,
         max_standard_error: keys.max_standard_error.unwrap_or(DEFAULT_MAX_STANDARD_ERROR),
+        expected_error: keys.expected_error.map(|errors| errors.check(check)).transpose()?,
         contacts: keys.contacts,
         count_contacts: keys.count_contacts,
         outputs: keys.outputs,
@@ -115,6 +116,7 @@ pub(super) fn keys(design: &Design, names: &FileNames) -> DesignKeys {
         estimator: algorithm.estimator,
         standard_error: algorithm.standard_error,
         max_standard_error: algorithm.standard_error.map(|_| algorithm.max_standard_error),
+        expected_error: algorithm.expected_error.clone(),
         contacts: algorithm.contacts,
         count_contacts: algorithm.count_contacts,
         outputs: algorithm.outputs,

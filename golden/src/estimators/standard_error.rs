@@ -3,7 +3,7 @@
 //!
 //! `s = |model, noise sigma max|b| / sum|b|, border e|`, where `e` is the share of `sum|b|` on taxels at the border beyond
 //! [`BORDER`], and `|x, y|` is [`added`]: the hardware takes the same steps. Three numbers of a design, fitted to contacts of
-//! all kinds by [`crate::calibrate::standard_error`].
+//! all kinds by [`crate::calibrate::state_errors`].
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

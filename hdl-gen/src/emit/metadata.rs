@@ -172,6 +172,9 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         let weight_lsb = -i64::from(map.dead.shift);
         value["dead_taxels"] = json!({ "taxels": map.dead.taxels, "weight_lsb": weight_lsb, "replaceable": map.room });
     }
+    if let Some(expected) = plan.design.expected_error() {
+        value["expected_error"] = expected.into();
+    }
     if let Some((key, own)) = estimator.own {
         value[key] = own;
     }

@@ -48,6 +48,7 @@ struct View {
     summary_words: usize,
     status: Vec<(u32, &'static str)>,
     testbench: bool,
+    expected_error: Option<String>,
 }
 
 impl View {
@@ -90,6 +91,7 @@ impl View {
             summary_words: SUMMARY_WORDS,
             status: status_bits().collect(),
             testbench: files.contains_key(&format!("sim/{}_tb.v", design.name)),
+            expected_error: design.expected_error(),
         }
     }
 }

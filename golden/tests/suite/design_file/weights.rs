@@ -95,6 +95,28 @@ fn a_standard_error_goes_with_every_estimator() {
     }
 }
 
+#[test]
+fn an_expected_error_has_a_number_for_each_noise() {
+    let text = |errors: &str| format!("{BARE}[algorithm]\nestimator = \"line\"\nexpected_error = {{ {errors} }}\n");
+    let design =
+        Design::from_toml(&text("noise = [0.0, 0.01], median = [1.0, 5.0], p95 = [2.0, 10.0]"), "pad.toml").unwrap();
+    let expected = design.algorithm.expected_error.as_ref().unwrap();
+    assert_eq!(
+        [0.0, 0.005, 0.01, 0.1].map(|noise| expected.at(noise)),
+        [[1.0, 2.0], [3.0, 6.0], [5.0, 10.0], [5.0, 10.0]]
+    );
+    assert_eq!(Design::from_toml(&design.to_toml(), "resolved").unwrap(), design);
+    for (errors, key) in [
+        ("noise = [], median = [], p95 = []", "expected_error.noise"),
+        ("noise = [0.0, 0.0], median = [1.0, 5.0], p95 = [2.0, 10.0]", "expected_error.noise"),
+        ("noise = [0.0, nan], median = [1.0, 5.0], p95 = [2.0, 10.0]", "expected_error.noise"),
+        ("noise = [0.0], median = [1.0, 5.0], p95 = [2.0]", "expected_error.median"),
+        ("noise = [0.0], median = [1.0], p95 = [-2.0]", "expected_error.p95"),
+    ] {
+        refused(&text(errors), &[key, "sptfra calibrate"]);
+    }
+}
+
 /// Constants of one training set, or noise, are not those of another.
 #[test]
 fn training_set_and_noise_are_part_of_what_constants_are_calibrated_for() {

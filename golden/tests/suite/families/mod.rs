@@ -1,5 +1,6 @@
 //! Contacts of other kinds than those that the estimators were made for: what is left of their accuracy.
 
+mod expected_error;
 mod layers;
 mod torque;
 
@@ -47,6 +48,17 @@ fn design(name: &str) -> Design {
     Design::load(&std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../designs/{name}.toml"))).unwrap()
 }
 
+/// Adds noise of this share of each frame's largest stress.
+fn noisy(frames: &mut [SceneFrame], noise: f64) {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    for SceneFrame { stress, .. } in frames {
+        let peak = stress.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()));
+        for stress in stress {
+            *stress += noise * peak * normal(&mut random);
+        }
+    }
+}
+
 #[test]
 fn frames_of_every_family_have_an_answer_not_far_from_the_truth() {
     let joint = design("sensor2-fast");
@@ -91,14 +103,8 @@ fn a_standard_error_is_right_at_the_noise_of_the_design() {
         let design = design(name);
         let solver = Solver::new(&design).unwrap();
         let noisy = |kind: Kind| -> Vec<SceneFrame> {
-            let mut random = ChaCha8Rng::seed_from_u64(1);
             let mut frames = kind.frames(&design.sensor, 0.5, 7000..7020).unwrap();
-            for SceneFrame { stress, .. } in &mut frames {
-                let peak = stress.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()));
-                for stress in stress {
-                    *stress += design.input.noise * peak * normal(&mut random);
-                }
-            }
+            noisy(&mut frames, design.input.noise);
             frames
         };
         let inside = Kind::ALL.into_iter().filter(|kind| !matches!(kind, Kind::Noisy | Kind::Border | Kind::Mixed));
