@@ -39,7 +39,7 @@ class Hardware(unittest.TestCase):
 
     def test_the_core_counts_contacts(self):
         text = (ROOT / "designs" / "small.toml").read_text()
-        small = sptfra.Design.from_toml(text.replace("outputs =", "contacts = 2\ncount_contacts = true\noutputs ="))
+        small = sptfra.Design.from_toml(text.replace("count_contacts = false", "contacts = 2\ncount_contacts = true"))
         frames = np.zeros((2, 3, 4))
         frames[0, :, 0], frames[0, :, 3], frames[1, :2, :2] = -4e4, -2e4, -3e4
         core, solved = sptfra.simulate(small, frames), sptfra.Solver(small).solve(frames)

@@ -200,7 +200,7 @@ fn lines(new: &Args, design: &Design, path: &Path) -> Vec<String> {
             let units = if design.input.tension == Tension::Read { " --hidden 64" } else { "" };
             format!(
                 "{trains}; with --training-set general{units}, in some\n\
-                 minutes, on contacts of other shapes too, held or tilted, and the network estimates its standard error."
+                 minutes, on contacts of other shapes too, held or tilted."
             )
         } else {
             format!("{trains}.")

@@ -105,7 +105,7 @@ fn the_report_fits_a_desk_and_a_telephone() {
         ("tells nothing of either", 1),
         ("[hardware]\nlanes = ", 2),
         // What is held, one body, tells of sensor 2, and what errs least there is not what is least bad under a punch.
-        ("Take no filter, reduced plan, joint, 160 units, general", 1),
+        ("Take no filter, reduced plan, joint, 128 units, general", 1),
         // Of one frame of each kind the hardest decides: on sensor 1 the line search's error is the least there.
         ("Take no filter, reduced plan, line, 8 lanes", 1),
         ("On scenes sensor2-held, sensor2-punch and kinds", 1),

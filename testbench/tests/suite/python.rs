@@ -96,7 +96,7 @@ fn the_wheel_works_in_an_empty_environment() {
         "stuck: 73 readings of 22 frames are exactly 104",
         "22 frames with a person: ",
         "22 frames have no direction",
-        "9335 frames a second on 97 DSP and 648.5 RAMB36",
+        "9335 frames a second on 97 DSP and 651.5 RAMB36",
         "e_Fx: 2.18 %",
         "frames simulated",
     ] {
