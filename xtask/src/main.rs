@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use sptfra::message;
 
-use commands::{bench, cells, confidence, corner_cases, mutants, noise, solver, stress};
+use commands::{bench, cells, confidence, corner_cases, luts, mutants, noise, solver, stress};
 
 /// Runs what only developers run.
 #[derive(Parser)]
@@ -27,6 +27,7 @@ enum Command {
     Noise(noise::Args),
     Confidence(confidence::Args),
     Cells(cells::Args),
+    Luts(luts::Args),
 }
 
 fn main() -> ExitCode {
@@ -39,5 +40,6 @@ fn main() -> ExitCode {
         Command::Noise(args) => noise::run(&args),
         Command::Confidence(args) => confidence::run(&args),
         Command::Cells(args) => cells::run(&args),
+        Command::Luts(args) => luts::run(&args),
     }))
 }
