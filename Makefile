@@ -69,7 +69,7 @@ $(TARGET)/trust/small-%.toml: designs/small.toml
 	@sed 's/^name = .*/name = "small_$*"/; s/^\[algorithm\]/&\nplan = "$*"/' $< > $@
 
 .PHONY: stress
-stress: tools $(SMALL_DESIGNS) ## A million frames, good and bad, with pauses and resets, through either plan, the joint estimator's stages, with banks written among them (an hour)
+stress: tools $(SMALL_DESIGNS) ## A million frames, good and bad, with pauses and resets, through either plan, the grid search's stages, with banks written among them (an hour)
 	@set -e; for design in $(SMALL_DESIGNS) designs/small-joint.toml designs/small-scanner.toml; do \
 		$(XTASK_RELEASE) stress $$design --frames $(FRAMES_COUNT); done
 

@@ -21,7 +21,7 @@ pub enum Kernel {
     ///
     /// Forces stay in newtons for each place. To choose where the normal force matters: the coarser the pitch for the
     /// depth, the more a point force overstates the stress straight below it, so that `F_z` falls short, by 10 and
-    /// 20 % on the sensors of the paper; with cells it is right to 1 %. The line estimator's tangential forces fall
+    /// 20 % on the sensors of the paper; with cells it is right to 1 %. The line search's tangential forces fall
     /// short with either kernel, so that friction, their quotient, is better with the point kernel. On layers of less
     /// than half a pitch, where a point force beside a taxel hardly reaches it, this one is better for both.
     Cell,

@@ -1,4 +1,4 @@
-//! The joint estimator's constants and network, fitted to a sensor.
+//! The grid search's constants and network, fitted to a sensor.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};

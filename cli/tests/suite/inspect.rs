@@ -97,7 +97,7 @@ fn inspect_says_how_the_line_is_searched() {
     assert!(said(64, 20).starts_with("17 of a bisection: 16 taxels a cell, more than 8"));
 }
 
-/// The joint estimator's gain belongs to a kernel.
+/// The grid search's gain belongs to a kernel.
 #[test]
 fn inspect_compares_the_gain_with_what_the_kernel_lacks() {
     let folder = tempfile::tempdir().unwrap();

@@ -137,7 +137,7 @@ fn a_sensor_that_cannot_be_inverted_is_refused() {
 #[test]
 fn the_papers_plan_has_no_joint_estimator() {
     let keys = "depth_mm = 3.0\n[algorithm]\nplan = \"paper\"\nestimator = \"joint\"\ngain = 1.1\nfriction_correction = [1, 0]";
-    check_design(&changed("depth_mm = 3.0", keys), &["paper's plan has the line estimator only", "plan = \"reduced\""]);
+    check_design(&changed("depth_mm = 3.0", keys), &["paper's plan has the line search only", "plan = \"reduced\""]);
 }
 
 #[test]

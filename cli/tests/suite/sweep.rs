@@ -110,13 +110,13 @@ fn the_joint_estimator_is_an_axis_with_the_constants_of_a_design_that_has_it() {
     };
     let both = [line.clone(), joint.clone()];
     let swept = points(&both, &[Estimator::Line, Estimator::Joint]);
-    // The paper's plan has the line estimator only.
+    // The paper's plan has the line search only.
     assert_eq!((by(&swept, Estimator::Line), by(&swept, Estimator::Joint)), (4, 2));
     for job in &swept {
         let (algorithm, is_joint) = (&job.design.algorithm, job.design.algorithm.estimator == Estimator::Joint);
         assert_eq!(algorithm.joint.gain.to_bits(), if is_joint { 1.125_f64 } else { 1.0 }.to_bits());
     }
-    assert_eq!(by(&points(&both, &[]), Estimator::Joint), 0, "filters are judged with the line estimator");
+    assert_eq!(by(&points(&both, &[]), Estimator::Joint), 0, "filters are judged with the line search");
     let alone = jobs(std::slice::from_ref(&line), &axes(&[Estimator::Joint]), &mut Vec::new(), 0);
     assert!(matches!(alone, Err(SweepError::NoPoints)), "no constants");
     // Constants are a part of the key.

@@ -1,4 +1,4 @@
-//! Constants of the joint estimator, fitted to contacts with known forces.
+//! Constants of the grid search, fitted to contacts with known forces.
 //!
 //! Everything comes from the design and a seed: contacts at random on a bonded layer, their stress, the estimate
 //! before it is calibrated, then a gain, two constants for the friction, and the weights of the correction.
@@ -150,7 +150,7 @@ pub enum Stage {
     Step,
 }
 
-/// Fits the constants of the joint estimator to a design; `tick` is called after each piece of work.
+/// Fits the constants of the grid search to a design; `tick` is called after each piece of work.
 ///
 /// The same design and settings give the same constants on the same machine; another processor may round the sums of
 /// the training differently, which changes a few weights by little.

@@ -47,7 +47,7 @@ pub struct Algorithm {
     pub filter: Filter,
     /// Friction estimator.
     pub estimator: Estimator,
-    /// Constants of the joint estimator; the line estimator has none and leaves them at their default.
+    /// Constants of the grid search; the line search has none and leaves them at their default.
     pub joint: Box<JointConstants>,
     /// The standard error of the tangential force, if it was fitted.
     pub standard_error: Option<StandardError>,

@@ -1,4 +1,4 @@
-//! The constants of the joint estimator as keys of a design.
+//! The constants of the grid search as keys of a design.
 
 use std::path::Path;
 
@@ -39,7 +39,7 @@ pub(super) fn constants(
     let missing = |key: &str| {
         check.value(
             &format!("algorithm.{key}"),
-            "is missing, and the joint estimator needs it",
+            "is missing, and the grid search needs it",
             format!("run `{}`, which fits it, or write estimator = \"line\"", fit(check.origin)),
         )
     };
@@ -64,7 +64,7 @@ fn fit(origin: &str) -> String {
     format!("sptfra calibrate {origin} --out {}", calibrated.display())
 }
 
-/// Refuses the keys of the joint estimator beside another one.
+/// Refuses the keys of the grid search beside another one.
 pub(super) fn refuse(check: &Check, keys: &AlgorithmKeys) -> Result<(), DesignError> {
     let given = [
         ("training_set", keys.training_set.is_some()),
@@ -78,7 +78,7 @@ pub(super) fn refuse(check: &Check, keys: &AlgorithmKeys) -> Result<(), DesignEr
     let more = if others.is_empty() { String::new() } else { format!(", and so do {}", others.join(", ")) };
     Err(check.value(
         &format!("algorithm.{key}"),
-        format!("belongs to the joint estimator{more}"),
+        format!("belongs to the grid search{more}"),
         "remove what belongs to it, or write estimator = \"joint\"",
     ))
 }

@@ -39,7 +39,7 @@ mod tests {
         assert!(line.contains("0.70 of a pitch") && line.contains("write estimator = \"joint\""), "{line}");
         assert!(line.contains("F_z comes out"), "{line}");
         let line = by_kernel(2.8, "line", "cell").expect("thin");
-        assert!(line.contains("line estimator tangential forces are off"), "{line}");
+        assert!(line.contains("line search tangential forces are off"), "{line}");
         assert_eq!(by_kernel(1.9, "joint", "cell"), None);
         let cells = by_kernel(1.5, "joint", "cell").expect("thin");
         assert!(cells.contains("0.38 of a pitch") && cells.contains("sptfra calibrate serves"), "{cells}");

@@ -1,4 +1,4 @@
-//! The line estimator on ground truth: accuracy, symmetry, and frames without an answer.
+//! The line search on ground truth: accuracy, symmetry, and frames without an answer.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! The joint estimator on ground truth: what it reaches, on contacts that the calibration has not seen.
+//! The grid search on ground truth: what it reaches, on contacts that the calibration has not seen.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -235,9 +235,9 @@ fn constants_that_make_no_sense_are_refused() {
     let correction =
         |keys: &str| joint(&format!("gain = 1\nfriction_correction = [1, 0]\n[algorithm.correction]\n{keys}"));
     for (text, parts) in [
-        (text("gain = 1.1"), ["algorithm.gain", "joint estimator"]),
-        (text("friction_correction = [1.0, 0.0]"), ["algorithm.friction_correction", "joint estimator"]),
-        (text("training_set = \"general\""), ["algorithm.training_set", "joint estimator"]),
+        (text("gain = 1.1"), ["algorithm.gain", "grid search"]),
+        (text("friction_correction = [1.0, 0.0]"), ["algorithm.friction_correction", "grid search"]),
+        (text("training_set = \"general\""), ["algorithm.training_set", "grid search"]),
         (joint("training_set = \"broad\""), ["training_set", "`sliding` or `general`"]),
         (
             joint("calibrated_for = \"4 x 3 taxels of 4 x 2 mm, 3 mm deep, point, 0\""),

@@ -33,7 +33,7 @@ fn check(columns: usize, rows: usize) {
     let solver = Solver::new(&design).unwrap();
     let solution = solver.solve(stress.as_slice()).unwrap();
     assert_eq!(solution.status, Status::default());
-    // The line estimator's friction falls short of the true 0.5, here as everywhere.
+    // The line search's friction falls short of the true 0.5, here as everywhere.
     let direction = 0.3_f64.atan2(0.4);
     assert!(
         solution.mu > 0.3 && solution.mu < 0.6 && (solution.phi - direction).abs() < 0.2,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Which frame is where in the joint estimator: three stages, each with a frame of its own.
+// Which frame is where in the grid search: three stages, each with a frame of its own.
 //
 // The search takes a frame a cycle after its u_q, its sums and what CeAn knows are there; the look what the search has
 // found, the correction what the look has. A stage holds what it found until the next one takes it, and may begin anew

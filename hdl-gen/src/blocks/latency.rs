@@ -97,7 +97,7 @@ pub const VISIT_TO_RESIDUAL: u64 = VISIT_TO_BUS + 1;
 /// From the last weights of a frame to its count: a step for each taxel and for the end of each row, and the way through
 /// sums and comparisons.
 ///
-/// A search has a stage that is longer (the joint estimator's with 15 points a side takes `4 quads + 110`, the others far
+/// A search has a stage that is longer (that of the grid takes `4 quads` and more, the others far
 /// longer; it takes `2 quads + 82` with many lanes, where that is longer than the count), and a frame is begun only when
 /// that stage of the one before the last is over. So a count is there before the search, and neither latency nor
 /// interval knows of it.

@@ -40,7 +40,7 @@ impl EstimatorPlan {
         }
     }
 
-    /// The joint estimator, if it is that one.
+    /// The grid search, if it is that one.
     pub fn joint(&self) -> Option<&JointPlan> {
         if let Self::Joint(joint) = self { Some(joint) } else { None }
     }

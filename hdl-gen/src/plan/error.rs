@@ -25,7 +25,7 @@ pub enum PlanError {
     },
     /// The estimator has no hardware in this plan.
     #[error(
-        "[algorithm] plan = \"paper\": the paper's plan has the line estimator only; write plan = \"reduced\", or \
+        "[algorithm] plan = \"paper\": the paper's plan has the line search only; write plan = \"reduced\", or \
          estimator = \"line\" and remove gain, tangential and correction"
     )]
     JointEstimator,

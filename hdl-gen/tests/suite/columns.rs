@@ -21,7 +21,7 @@ const MOST_LINES: usize = 360;
 /// modules; the longest has a door that drops frames, a curve in banks, a map of dead taxels and a range.
 const MOST_LINES_OF_TOP: usize = 680;
 
-/// Data, not text: words of memories, rows of matrices, and the joint estimator's weights.
+/// Data, not text: words of memories, rows of matrices, and the grid search's weights.
 fn is_data(path: &str) -> bool {
     let memory = Path::new(path).extension().is_some_and(|ending| ending == "mem");
     memory || path.starts_with("mcsr/") || path == WEIGHTS_FILE

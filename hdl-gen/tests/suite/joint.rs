@@ -1,4 +1,4 @@
-//! The joint estimator's plan: formats that no frame can leave, ROMs that hold what the plan says.
+//! The grid search's plan: formats that no frame can leave, ROMs that hold what the plan says.
 
 use golden::design::{Correction, Design, Estimator, StandardError};
 use hdl_gen::emit::emit;

@@ -59,7 +59,7 @@ pub enum SweepError {
     Filter(String),
     /// There is nothing to compute.
     #[error(
-        "no point is left: no combination of these plans, filters, lanes and estimators exists (the joint estimator needs \
+        "no point is left: no combination of these plans, filters, lanes and estimators exists (the grid search needs \
          the reduced plan, and a design that has it); leave one of the options out"
     )]
     NoPoints,

@@ -51,7 +51,7 @@ impl From<&Sensor> for Geometry {
     }
 }
 
-/// What tells one joint estimator from another.
+/// What tells one grid search from another.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Calibration {
     /// Hidden units of the correction; 0 without one.
@@ -116,7 +116,7 @@ pub struct Point {
     pub filter: String,
     /// The estimator.
     pub estimator: Estimator,
-    /// Which joint estimator; none for another one.
+    /// Which grid search; none for another one.
     pub calibration: Option<Calibration>,
     /// Width of the coefficients.
     pub coefficient_bits: u32,

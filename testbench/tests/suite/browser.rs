@@ -111,7 +111,7 @@ fn the_report_fits_a_desk_and_a_telephone() {
         ("On scenes sensor2-held, sensor2-punch and kinds", 1),
         ("The same on contacts of all kinds", 2),
         // The field that is shown is that of the recommended design.
-        ("the hardware of sensor2_wide, joint estimator, finds", 1),
+        ("the hardware of sensor2_wide, grid search, finds", 1),
         ("href=\"recommended/sensor2_wide_recommended.toml\"", 1),
     ] {
         assert_eq!(page.matches(part).count(), times, "{part}");

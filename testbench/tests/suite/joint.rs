@@ -1,4 +1,4 @@
-//! The joint estimator in hardware: every word and cycle by the model, the model by the solver, the RTL by the truth.
+//! The grid search in hardware: every word and cycle by the model, the model by the solver, the RTL by the truth.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -28,7 +28,7 @@ const DISC: Shape = Shape::Disc { radius_m: 10e-3 };
 /// Of contacts; those of the solver's tests.
 const SEED: u64 = 0x5eed_0ff0;
 const FRICTIONS: [f64; 3] = [0.2, 0.5, 0.8];
-/// Of the largest `|f_z|` of a frame. Most of it is the field's own rounding, which the line estimator has too; the
+/// Of the largest `|f_z|` of a frame. Most of it is the field's own rounding, which the line search has too; the
 /// rest is a friction component off by a few of its steps, 2^-16.
 const MOST_FIELD_ERROR: f64 = 5e-4;
 /// A joint design may have so many times the multipliers of one with the line.

@@ -1,4 +1,4 @@
-//! The line estimator on a bonded layer, as RTL, by both plans and with filter F3 (in `make test`, by the reduced plan): its
+//! The line search on a bonded layer, as RTL, by both plans and with filter F3 (in `make test`, by the reduced plan): its
 //! errors are those of the f64 solver.
 
 use std::fmt::Write as _;

@@ -12,7 +12,7 @@ use crate::support::{shipped, workspace};
 /// The device of the board in `hdl-gen/boards` that has one.
 const PART: &str = "xc7z020clg400-1";
 
-/// The joint estimator with its correction on 4 x 3 taxels: lanes, field, look, network, points, friction and summary.
+/// The grid search with its correction on 4 x 3 taxels: lanes, field, look, network, points, friction and summary.
 fn plan(data_bits: u32) -> Plan {
     let mut design: Design = shipped("small-joint");
     PART.clone_into(&mut design.hardware.part);

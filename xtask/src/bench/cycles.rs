@@ -41,7 +41,7 @@ pub enum Kind {
     Filtered,
     /// The paper's plan, no filter.
     Paper,
-    /// The reduced plan with the joint estimator, no filter and no network: one is trained for a sensor.
+    /// The reduced plan with the grid search, no filter and no network: one is trained for a sensor.
     Joint,
 }
 
@@ -55,7 +55,7 @@ impl Kind {
             Self::Reduced => "reduced plan, no filter",
             Self::Filtered => "reduced plan, F2 with p = 1",
             Self::Paper => "the paper's plan, no filter",
-            Self::Joint => "reduced plan, no filter, the joint estimator on 15 × 15 points without a network",
+            Self::Joint => "reduced plan, no filter, the grid search without a network",
         }
     }
 

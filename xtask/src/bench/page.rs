@@ -155,7 +155,7 @@ fn cycles(page: &mut Page, points: &[Point], command: &str, plot: Option<&str>) 
         );
     }
     page.line(
-        "The first three tables have the line estimator. The joint one takes a network too where a sensor has been \
+        "The first three tables have the line search. The joint one takes a network too where a sensor has been \
          calibrated; [estimators.md](estimators.md#step-by-step) has what that adds, step by step.",
     );
     for kind in Kind::ALL {

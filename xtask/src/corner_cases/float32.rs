@@ -81,7 +81,7 @@ impl<'a> Single<'a> {
         }
     }
 
-    /// The paper's line estimator: the direction of push, the line, the middle of the level set on it.
+    /// The paper's line search: the direction of push, the line, the middle of the level set on it.
     fn friction(
         &self,
         b: &[f32],

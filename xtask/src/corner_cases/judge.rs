@@ -61,7 +61,7 @@ pub struct Row {
     pub condition_aat: Option<f64>,
     /// The f64 solver.
     pub f64: Option<Judged>,
-    /// The same in float32; the line estimator only.
+    /// The same in float32; the line search only.
     pub f32: Option<Judged>,
     /// The integer model of the hardware.
     pub fixed: Option<Judged>,

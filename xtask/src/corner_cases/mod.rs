@@ -40,7 +40,7 @@ pub struct Scope {
     pub rtl: bool,
 }
 
-/// Judges all cases, on all cores: by the line estimator, then by the joint one.
+/// Judges all cases, on all cores: by the line search, then by the joint one.
 ///
 /// # Errors
 /// [`HardError`] if a case cannot be made, or its RTL not be simulated.

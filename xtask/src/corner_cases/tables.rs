@@ -23,7 +23,7 @@ pub struct Group {
     pub refusals: Vec<String>,
 }
 
-/// Names of the columns of the line estimator's tables.
+/// Names of the columns of the line search's tables.
 const LINE_HEADER: [&str; 21] = [
     "case",
     "cond C33",
@@ -47,7 +47,7 @@ const LINE_HEADER: [&str; 21] = [
     "RTL",
     "status",
 ];
-/// Names of the columns of the joint estimator's: its matrices are those of the line estimator, and so are its backward
+/// Names of the columns of the grid search's: its matrices are those of the line search, and so are its backward
 /// errors, but for the gain.
 const JOINT_HEADER: [&str; 11] = [
     "case",
@@ -84,7 +84,7 @@ pub fn groups(rows: &[Row]) -> Vec<Group> {
         (!own.is_empty()).then(|| Group {
             title: format!("{wanted}, {estimator} estimator"),
             table: table.ending_in_words(),
-            // The joint estimator needs the same matrices: it is refused for the same reason.
+            // The grid search needs the same matrices: it is refused for the same reason.
             refusals: if is_line { refusals(&own) } else { Vec::new() },
         })
     };
@@ -205,7 +205,7 @@ pub fn markdown(rows: &[Row], plot: Option<&str>) -> String {
          a faint contact is solved as exactly as a strong one.",
     );
     page.line(
-        "The joint estimator has the constants of the shipped designs where the sensor is theirs: sensor 1, and \
+        "The grid search has the constants of the shipped designs where the sensor is theirs: sensor 1, and \
          h/s = 0.75, which is sensor 2. The others have those that `sptfra new` fits, the gain and two of friction, \
          also on layers of less than half a pitch by points, where it takes the kernel \"cell\": `sptfra calibrate` would \
          halve their errors. Backward errors and float32 are those of the matrices, which the \

@@ -60,7 +60,7 @@ fn no_answer_is_wrong_in_silence() {
     }
 }
 
-/// Matrices are those of the line estimator; there is no float32.
+/// Matrices are those of the line search; there is no float32.
 fn check_joint(row: &Row, f64: &Judged, fixed: &Judged) {
     assert!(row.f32.is_none());
     if row.case == "no tension" {
@@ -250,8 +250,8 @@ fn the_command_prints_a_table_and_writes_a_page() {
         assert!(row["rtl_is_model"].is_null(), "--quick simulates nothing");
         assert_eq!(row["f64"].as_object().map_or(0, |judged| judged["silent"].as_u64().expect("a count") as usize), 0);
     }
-    assert!(written.contains("## Depth over pitch, line estimator\n") && written.contains("| h/s = 4 |"));
-    assert!(written.contains("## Contacts, joint estimator\n"));
+    assert!(written.contains("## Depth over pitch, line search\n") && written.contains("| h/s = 4 |"));
+    assert!(written.contains("## Contacts, grid search\n"));
     // The picture beside the page; it is that of the docs, whose rows were simulated, too.
     assert!(written.contains("](depth.svg)"));
     let drawn = std::fs::read_to_string(&plot).expect("drawn");

@@ -41,7 +41,7 @@ pub(super) fn fit(
         return not(format!("{why}; its constants stay. Pull the contact sideways with known forces (F_x, F_y)"));
     }
     if design.algorithm.estimator != Estimator::Joint {
-        return not("the line estimator has no constants; write estimator = \"joint\" to have some".to_owned());
+        return not("the line search has no constants; write estimator = \"joint\" to have some".to_owned());
     }
     let drag = |h: usize| holds[h].force[0].unwrap_or(0.0).hypot(holds[h].force[1].unwrap_or(0.0)) / holds[h].load;
     let dragged: Vec<usize> = known.into_iter().filter(|&h| drag(h) >= DRAGGED).collect();

@@ -1,4 +1,4 @@
-//! What `sptfra calibrate` finds for the joint estimator.
+//! What `sptfra calibrate` finds for the grid search.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -30,7 +30,7 @@ pub enum TrainingSet {
 
 print_as_words!(TrainingSet);
 
-/// Constants of the joint estimator for one design.
+/// Constants of the grid search for one design.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointConstants {
     /// Contacts that the other constants are trained on.

@@ -1,4 +1,4 @@
-//! The joint estimator: both friction components at once, without the direction of push.
+//! The grid search: both friction components at once, without the direction of push.
 //!
 //! Condition 1, `B(mu_x, mu_y) = sum_i max(0, u0_i + mu_x u1_i + mu_y u2_i)`, is convex in both components together.
 //! Here it is evaluated on a fixed grid by additions alone, and the estimate is the weighted centroid of a level set.
@@ -64,7 +64,7 @@ pub(crate) fn look(
     look.take(normal, columns, half_window, seen.contact.stress_sum, mu, tie);
 }
 
-/// The joint estimator with the constants of one design.
+/// The grid search with the constants of one design.
 #[derive(Clone, Debug)]
 pub(crate) struct Joint {
     /// Factor on all forces.

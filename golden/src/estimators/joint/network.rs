@@ -1,4 +1,4 @@
-//! A small network that corrects what the joint estimator systematically gets wrong.
+//! A small network that corrects what the grid search systematically gets wrong.
 //!
 //! The taxels sample the stress; where a contact's edge lies between two of them moves the estimate by several
 //! percent, in a way that repeats with the pitch. The network sees the stress that the normal forces alone would

@@ -1,4 +1,4 @@
-//! The layer that the joint estimator needs.
+//! The layer that the grid search needs.
 
 use super::JointConstants;
 use crate::estimators::Thin;

@@ -1,4 +1,4 @@
-//! The line estimator, the paper's: friction along the direction of push, which the centroids of compression and tension
+//! The line search, the paper's: friction along the direction of push, which the centroids of compression and tension
 //! tell, found where the tension under the normal forces is least.
 
 mod level_set;

@@ -1,4 +1,4 @@
-//! The layer that the line estimator needs.
+//! The layer that the line search needs.
 
 use crate::estimators::Thin;
 use crate::kernel::{self, Kernel};
@@ -12,5 +12,5 @@ pub(crate) fn thin(sensor: &Sensor, kernel: Kernel) -> Thin {
         // With the "cell" kernel.
         _ => "tangential forces are off by tenths of F_z".to_owned(),
     };
-    Thin { limit: 0.75, remedy: format!("by the line estimator {wrong}; write estimator = \"joint\"") }
+    Thin { limit: 0.75, remedy: format!("by the line search {wrong}; write estimator = \"joint\"") }
 }

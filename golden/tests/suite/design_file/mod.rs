@@ -14,7 +14,7 @@ use golden::design::{Design, Estimator, Filter, Kernel, Optimise, Outputs, PlanK
 /// Nothing but what every design must say.
 const BARE: &str =
     "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 10\nrows = 8\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n";
-/// The same by the line estimator, which needs no constants.
+/// The same by the line search, which needs no constants.
 const MINIMAL: &str = "format = 3\nbase = \"tests/plain.toml\"\nname = \"pad\"\n[sensor]\ncolumns = 10\nrows = 8\n\
     pitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n";
 

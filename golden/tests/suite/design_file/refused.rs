@@ -120,7 +120,7 @@ fn names_that_are_no_identifiers() {
 fn options_are_refused_with_the_list_of_allowed_ones() {
     for (line, parts) in [
         ("kernel = \"line\"", ["kernel", "line 10", "`point` or `cell`"]),
-        ("calibrated_for = \"x\"", ["algorithm.calibrated_for", "joint estimator", "remove what belongs"]),
+        ("calibrated_for = \"x\"", ["algorithm.calibrated_for", "grid search", "remove what belongs"]),
         ("training_set = \"general\"\ngain = 1.1", ["algorithm.training_set", "and so do gain", "remove what belongs"]),
         ("estimator = \"joint\"\ncalibrated_for = \"x\"", ["algorithm.calibrated_for", "\"x\"", "sptfra calibrate"]),
         ("estimator = \"point\"", ["estimator", "line 10", "`line` or `joint`"]),
@@ -165,7 +165,7 @@ fn options_are_refused_with_the_list_of_allowed_ones() {
     }
 }
 
-/// Constants of the joint estimator stay with the sensor, the kernel and the regularisation that they were fitted to.
+/// Constants of the grid search stay with the sensor, the kernel and the regularisation that they were fitted to.
 #[test]
 fn constants_of_another_sensor_are_refused() {
     let text = include_str!("../../../../designs/sensor2-fast.toml");

@@ -1,4 +1,4 @@
-//! The joint estimator's weights, in the design or in a file beside it.
+//! The grid search's weights, in the design or in a file beside it.
 
 #![allow(clippy::float_cmp)] // the same bits are meant
 
@@ -35,7 +35,7 @@ fn weights_stand_in_a_file_of_their_own() {
     assert_eq!(Design::from_parts(&resolved, "resolved", &files).unwrap(), design);
     let renamed = design.to_toml_naming("a \"b\".csv");
     assert_eq!(Design::from_parts(&renamed, "resolved", &[("a \"b\".csv", WEIGHTS.to_owned())]).unwrap(), design);
-    // The line estimator has no weights to write.
+    // The line search has no weights to write.
     let mut line = design.clone();
     line.algorithm.estimator = Estimator::Line;
     assert!(line.files().is_empty() && !line.to_toml().contains("correction"));

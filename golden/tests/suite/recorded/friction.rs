@@ -76,7 +76,7 @@ fn tangential_forces_tell_the_constants_of_friction() {
     let said = fit_forces(&before, &vec![vec![0.0; 78]; sideways.forces.len()], &sideways).map(drop).unwrap_err();
     assert!(said.to_string().contains("by the design nothing presses"), "{said}");
     let line = fit_forces(&design("", ""), &recording.frames, &sideways).unwrap();
-    assert!(says(&line.undetermined, &["friction: the line estimator has no constants"]), "{:?}", line.undetermined);
+    assert!(says(&line.undetermined, &["friction: the line search has no constants"]), "{:?}", line.undetermined);
     // Forces the wrong way round are no friction.
     let mut turned = recording.measured.clone();
     turned.forces.iter_mut().for_each(|force| (force[0], force[1]) = (force[0].map(|x| -x), force[1].map(|y| -y)));

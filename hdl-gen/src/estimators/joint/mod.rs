@@ -1,4 +1,4 @@
-//! The joint estimator in integers: formats and constants of its grid, its friction and its network.
+//! The grid search in integers: formats and constants of its grid, its friction and its network.
 //!
 //! The steps are those of `docs/explanation/estimators.md`.
 
@@ -39,7 +39,7 @@ pub const CENTRE_HALF: i64 = (ONE / 2.0 + TIE * ONE) as i64;
 const U_BITS: u32 = LONG_BITS;
 /// One, in the steps of the friction.
 const ONE: f64 = (1_u32 << FRICTION_FRACTION) as f64;
-/// Formats and constants of the joint estimator of a design.
+/// Formats and constants of the grid search of a design.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct JointPlan {
     /// The grid search.

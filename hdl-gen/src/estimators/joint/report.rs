@@ -1,4 +1,4 @@
-//! The joint estimator in the words of `sptfra inspect`.
+//! The grid search in the words of `sptfra inspect`.
 
 use golden::design::{Correction, Design, Kernel};
 use golden::kernel::gain;
@@ -27,7 +27,7 @@ pub fn report(plan: &JointPlan, design: &Design) -> String {
         _ => "none: `sptfra calibrate` trains one".to_owned(),
     };
     format!(
-        "\nFriction, joint estimator\n  search       {}\n  gain         {}, in the matrices\n  \
+        "\nFriction, grid search\n  search       {}\n  gain         {}, in the matrices\n  \
          friction     c1 {c1:.4}, c3 {c3:.4}\n  network      {correction}\n{}",
         grid(plan, design),
         short(constants.gain),
@@ -89,5 +89,5 @@ pub fn kernel_advice(design: &Design, indent: &str) -> String {
         (true, false) => format!("so F_z is right, and mu comes out better than with {other}"),
         (false, false) => format!("so F_z is right; mu comes out better with {other} than with {own}, calibrated anew"),
     };
-    format!("{}: wants a gain of {wants:.3}, the joint estimator has {has:.3}:\n{indent}{verdict}", algorithm.kernel)
+    format!("{}: wants a gain of {wants:.3}, the grid search has {has:.3}:\n{indent}{verdict}", algorithm.kernel)
 }

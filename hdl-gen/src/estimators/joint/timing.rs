@@ -1,4 +1,4 @@
-//! Cycles of the joint estimator's modules: counts of the emitted pipelines, exact.
+//! Cycles of the grid search's modules: counts of the emitted pipelines, exact.
 
 use golden::parity::Quads;
 use golden::sensor::Sensor;

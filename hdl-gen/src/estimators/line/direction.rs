@@ -1,4 +1,4 @@
-//! `CeAn` of the line estimator in integers: centroids of compression and tension, direction of the push (Eq. 24, as a vector).
+//! `CeAn` of the line search in integers: centroids of compression and tension, direction of the push (Eq. 24, as a vector).
 
 use super::super::Seen;
 use super::{CENTROID_FRACTION, PITCH_FRACTION};

@@ -1,4 +1,4 @@
-//! The line estimator in the words of `sptfra inspect`.
+//! The line search in the words of `sptfra inspect`.
 
 use golden::design::{Design, Kernel};
 use golden::kernel::gain;
@@ -24,7 +24,7 @@ pub fn report(plan: &LinePlan, design: &Design) -> String {
         )
     };
     format!(
-        "\nFriction, line estimator\n  search       {} cycles: minimum, then both ends of the level set\n  rounds       {rounds}\n",
+        "\nFriction, line search\n  search       {} cycles: minimum, then both ends of the level set\n  rounds       {rounds}\n",
         timing::search(plan)
     )
 }

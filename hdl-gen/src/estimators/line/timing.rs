@@ -1,4 +1,4 @@
-//! Cycles of the line estimator's modules: counts of the emitted pipelines, exact.
+//! Cycles of the line search's modules: counts of the emitted pipelines, exact.
 
 use super::{LINE_FRACTION, LinePlan, SEARCH_STEPS};
 use crate::cores::divider;

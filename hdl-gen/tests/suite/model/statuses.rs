@@ -87,7 +87,7 @@ fn answers_of_a_thin_layer_have_low_confidence() {
     {
         let constants = if estimator == "joint" { "gain = 1\nfriction_correction = [1, 0]" } else { "" };
         let more = format!("[algorithm]\nestimator = \"{estimator}\"\n{constants}");
-        // The paper's plan has the line estimator alone.
+        // The paper's plan has the line search alone.
         let kinds = if estimator == "line" { &[PlanKind::Paper, PlanKind::Reduced][..] } else { &[PlanKind::Reduced] };
         for &kind in kinds {
             let (design, solver, plan) = prepare_as(&design_text("pad", [8, 6], [4.0, 3.0], depth, &more), kind);

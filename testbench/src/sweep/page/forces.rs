@@ -81,7 +81,7 @@ pub fn field(designs: &[&Design], scene: Option<&SweepScene>) -> Result<(Vec<Fig
     Ok((figures, caption))
 }
 
-/// How well the contacts of a scene are separated, in f64, by the first design with the joint estimator.
+/// How well the contacts of a scene are separated, in f64, by the first design with the grid search.
 pub fn contacts(designs: &[&Design], scene: &SweepScene) -> Option<String> {
     let contacts = scene.contacts.len();
     if !(2..=MOST).contains(&contacts) {

@@ -23,8 +23,8 @@ const KINDS: [Kind; 6] = [
     ("line, paper's plan, F2", "#e0a800", |point| point.filter.starts_with("f2")),
     ("line, paper's plan, F3", "#8e5bd0", |point| point.filter == "f3"),
 ];
-const JOINT: (&str, &str) = ("joint estimator", "#2a9d5c");
-const GENERAL: (&str, &str) = ("joint estimator, trained on general contacts", "#8fb821");
+const JOINT: (&str, &str) = ("grid search", "#2a9d5c");
+const GENERAL: (&str, &str) = ("grid search, trained on general contacts", "#8fb821");
 /// Errors above are drawn at the rim.
 const MOST_PERCENT: f64 = 100.0;
 const LEAST_PERCENT: f64 = 1.0;
@@ -227,8 +227,8 @@ mod tests {
 
     #[test]
     fn long_names_are_broken_behind_a_comma() {
-        let long = "reduced plan, no filter, joint estimator, 160 units, general";
-        assert_eq!(in_lines(long), ["reduced plan, no filter, joint estimator,", "160 units, general"]);
+        let long = "reduced plan, no filter, grid search, 160 units, general";
+        assert_eq!(in_lines(long), ["reduced plan, no filter, grid search,", "160 units, general"]);
         assert_eq!(in_lines("paper, f3, line"), ["paper, f3, line"]);
     }
 

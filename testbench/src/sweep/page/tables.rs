@@ -13,7 +13,7 @@ use golden::table::{Cell, Table};
 /// Widths and lanes of the shipped designs, by which points are looked up.
 const BASE: (u32, u32, usize) = (18, 27, 16);
 
-/// The line estimator's point of a filter and a plan, in the usual widths and lanes, on one scene.
+/// The line search's point of a filter and a plan, in the usual widths and lanes, on one scene.
 pub fn find<'a>(points: &[&'a Point], filter: &str, plan: PlanKind) -> Option<&'a Point> {
     all_by(points, filter, plan, Estimator::Line).next()
 }

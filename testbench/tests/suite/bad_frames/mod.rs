@@ -39,7 +39,7 @@ struct Subject {
     built: Built,
 }
 
-/// The small design in every plan: the paper's, the reduced one for either aim, by either grid of the joint estimator, and
+/// The small design in every plan: the paper's, the reduced one for either aim, by the grid search, and
 /// without a field.
 fn subjects() -> &'static [Subject] {
     static SUBJECTS: OnceLock<Vec<Subject>> = OnceLock::new();
@@ -212,7 +212,7 @@ fn pressing_straight_down_has_no_direction() {
     for subject in subjects() {
         let taxels = subject.plan.taxels();
         let stress: Vec<f64> = (0..taxels).map(|taxel| -1000.0 - 100.0 * (taxel % 5) as f64).collect();
-        // The joint estimator does without the direction, unless nothing presses.
+        // The grid search does without the direction, unless nothing presses.
         let signs = if subject.plan.estimator.joint().is_some() { &[-1.0][..] } else { &[1.0, -1.0] };
         for sign in signs {
             let words = subject.answer(&encode(&stress.iter().map(|value| sign * value).collect::<Vec<_>>()));
@@ -285,7 +285,7 @@ fn mixed_in_every_mode(subject: &Subject) {
         assert!(seen >= fewest_of_a_status(), "only {seen} frames with the status {status:#x} alone");
     }
     let seen = expected.iter().filter(|words| words[0] & NO_TENSION != 0).count();
-    // The joint estimator asks for tension only where it finds that something is pushed.
+    // The grid search asks for tension only where it finds that something is pushed.
     let least = if plan.estimator.joint().is_some() { 0 } else { fewest_of_a_status() };
     assert!(seen >= least, "only {seen} frames without tension");
     let [free, _, _, both] = Mode::all(11);

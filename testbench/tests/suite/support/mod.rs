@@ -83,7 +83,7 @@ pub fn by_plan(mut design: Design, kind: PlanKind, outputs: Outputs) -> Design {
     design
 }
 
-/// The design by the reduced plan with the joint estimator, and a correction of a few units that nobody trained.
+/// The design by the reduced plan with the grid search, and a correction of a few units that nobody trained.
 pub fn with_joint(mut design: Design) -> Design {
     design.algorithm.plan = PlanKind::Reduced;
     design.algorithm.estimator = Estimator::Joint;

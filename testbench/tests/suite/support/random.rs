@@ -30,7 +30,7 @@ pub enum Kind {
         latency: bool,
     },
     Resultants,
-    /// The joint estimator, with or without a correction.
+    /// The grid search, with or without a correction.
     Joint {
         field: bool,
         correction: bool,
@@ -161,7 +161,7 @@ fn standard_error(seed: u64) -> StandardError {
     }
 }
 
-/// Constants of the joint estimator as no calibration finds them: a window from nothing to the whole grid, few units or
+/// Constants of the grid search as no calibration finds them: a window from nothing to the whole grid, few units or
 /// a number that does not fill the last pass, weights from nothing to the largest.
 fn constants(sensor: &Sensor, correction: bool) -> JointConstants {
     let mut random = ChaCha8Rng::seed_from_u64((64 * sensor.columns + sensor.rows) as u64);

@@ -29,7 +29,7 @@ pub struct Case {
     pub bodies: Option<Vec<Vec<Body>>>,
 }
 
-/// Designs with constants of the joint estimator for their sensors, and the names and contents of their weights.
+/// Designs with constants of the grid search for their sensors, and the names and contents of their weights.
 const CALIBRATED: [[&str; 3]; 2] = [
     [
         include_str!("../../../../designs/sensor1-fast.toml"),
@@ -152,7 +152,7 @@ pub fn all(large: bool) -> Result<Vec<Case>, HardError> {
     Ok(cases.0)
 }
 
-/// The same cases by the joint estimator: with the constants of the shipped designs where the sensor and its
+/// The same cases by the grid search: with the constants of the shipped designs where the sensor and its
 /// regularisation are theirs, else with those that a new design gets: gain and friction fitted, no correction.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Op's friction in integers, joint estimator: grid search, correction, both components at once.
+//! Op's friction in integers: grid search, correction, both components at once.
 
 mod look;
 mod network;

@@ -147,7 +147,7 @@ pub const PROOFS: &[Proof] = &[
         broken: LATENCY_BROKEN,
     },
     Proof {
-        name: "frame handshake, joint estimator",
+        name: "frame handshake, grid search",
         harness: "reduced",
         design: joint,
         defines: &["JOINT"],
@@ -161,7 +161,7 @@ pub const PROOFS: &[Proof] = &[
         broken: JOINT_BROKEN,
     },
     Proof {
-        name: "frame handshake, joint estimator with a correction",
+        name: "frame handshake, grid search with a correction",
         harness: "reduced",
         design: corrected,
         defines: &["JOINT", "LOOK"],
@@ -175,7 +175,7 @@ pub const PROOFS: &[Proof] = &[
         broken: &[("sptfra_joint_stages", "u_released = look_start;", "u_released = search_start;")],
     },
     Proof {
-        name: "frame handshake, resultants only by the joint estimator with a correction",
+        name: "frame handshake, resultants only by the grid search with a correction",
         harness: "resultants",
         design: corrected_resultants,
         defines: &["JOINT"],
