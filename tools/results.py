@@ -16,7 +16,7 @@ PLANS = {
     "reduced": "line, reduced, no filter",
     "filtered": "line, reduced, F2 p = 1",
     "paper": "line, paper, no filter",
-    "joint": "grid 15, reduced, no filter",
+    "joint": "grid search, reduced, no filter",
 }
 GROUPS = {
     "depth": "Depth over pitch", "size": "Size", "contact": "Contacts", "kind": "Contacts of other kinds",

@@ -21,16 +21,15 @@ FORCES.csv: one line a frame; a header with units, such as F_x (N),F_y (N),F_z (
 unknown. F_z or weights alone will do: weight (g). A column contact or place names what belongs together. Frames without
 load, with the force 0, give the offsets. PRESSURES.csv: pressure (kPa), one line a frame.
 
-RESOLVED.toml is the design with the fitted keys, among them standard_error, expected_error, gain, friction_correction, calibrated_for
-and correction. The
-network's weights stand beside it, in RESOLVED.weights.csv. `sptfra new --schema` explains each key.";
+RESOLVED.toml is the design with the fitted keys, among them gain, friction_correction, correction, standard_error and
+expected_error. The network's weights stand beside it, in RESOLVED.weights.csv. `sptfra new --schema` explains each key.";
 
 /// Fits a design's constants to simulated contacts or to recordings.
 ///
 /// Without --frames and --uniform: the standard error, and the constants of the grid search (`estimator = "joint"`).
 /// Makes random contacts on a bonded layer, from the seed alone. Fits to their known forces a gain, two constants of the
-/// friction, and the weights of the correction, then the standard error
-/// and the error to be expected by noise. The weights go to RESOLVED.weights.csv beside RESOLVED.toml: both are written, or none.
+/// friction, and the weights of the correction, then the standard error and the error to be expected by noise. The weights
+/// go to RESOLVED.weights.csv beside RESOLVED.toml: both are written, or none.
 ///
 /// With --frames and --forces: the scale of a count (a curve, a gain for all taxels, and the taxels' own), and the
 /// constants of friction where tangential forces are known. Reports what the recording determines, with errors at places

@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use golden::design::Design;
 use golden::output::write_whole;
 use sptfra::arguments::design_file;
 use sptfra::message;
 use xtask::confidence;
+
+use super::named;
 
 /// Writes shares of errors within the standard errors of designs, by noise and kind of contact, as CSV.
 #[derive(clap::Args)]
@@ -21,11 +22,7 @@ pub struct Args {
 
 /// Writes the table.
 pub fn run(arguments: &Args) -> message::Result {
-    let mut designs = Vec::new();
-    for path in &arguments.designs {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        designs.push((name, Design::load(path)?));
-    }
+    let designs = named(&arguments.designs)?;
     write_whole(&arguments.out, confidence::csv(&designs)?.as_bytes())?;
     Ok(format!("{}: {} designs\n", arguments.out.display(), designs.len()).into())
 }

@@ -11,7 +11,14 @@ pub mod stress;
 
 use std::path::PathBuf;
 
+use golden::design::{Design, DesignError};
 use sptfra::arguments::design_file;
+
+/// Designs, which go by the names of their files.
+fn named(files: &[PathBuf]) -> Result<Vec<(String, Design)>, DesignError> {
+    let name = |path: &PathBuf| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    files.iter().map(|path| Ok((name(path), Design::load(path)?))).collect()
+}
 
 /// Options of the tasks that draw at random.
 #[derive(clap::Args)]

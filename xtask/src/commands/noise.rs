@@ -8,6 +8,8 @@ use sptfra::arguments::design_file;
 use sptfra::message;
 use xtask::noise;
 
+use super::named;
+
 /// Writes errors of designs against the noise of a reading, or against smoothing, on round sliding contacts, as CSV.
 #[derive(clap::Args)]
 pub struct Args {
@@ -24,11 +26,7 @@ pub struct Args {
 
 /// Writes the table.
 pub fn run(arguments: &Args) -> message::Result {
-    let mut designs = Vec::new();
-    for path in &arguments.designs {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        designs.push((name, Design::load(path)?));
-    }
+    let designs = named(&arguments.designs)?;
     let text = if arguments.smoothing { smoothing(&designs)? } else { noise::csv(&designs)? };
     write_whole(&arguments.out, text.as_bytes())?;
     Ok(format!("{}: {} designs\n", arguments.out.display(), designs.len()).into())
