@@ -134,6 +134,9 @@ pub fn smoothing_csv(designs: &[(String, Design, f64)]) -> Result<String, NoiseE
 }
 
 /// The bound of a sensor of the paper: median error of the best estimator, in percent of the normal force at a noise of 1 %.
+///
+/// Cramér-Rao bound of round sliding contacts with unknown place, size, force and direction on a bonded layer with a Poisson's
+/// ratio of 0.49: a root mean square of 5.2 and 6.6.
 pub fn bound(design: &Design) -> Option<f64> {
     let bounds = [([4.0, 2.0], 5.2), ([4.0, 4.0], 6.6)];
     let is = |pitch_mm: [f64; 2]| pitch_mm.map(f64::to_bits) == design.sensor.pitch_mm.map(f64::to_bits);
