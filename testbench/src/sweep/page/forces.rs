@@ -54,15 +54,15 @@ pub fn field(designs: &[&Design], scene: Option<&SweepScene>) -> Result<(Vec<Fig
         return Ok((Vec::new(), String::new()));
     };
     let force = truth.force;
+    let search = if design.algorithm.estimator == Estimator::Joint { "grid" } else { "line" };
     let caption = format!(
-        "Frame {frame} of scene {}: pushed with ({:.2}, {:.2}, {:.2}) N; the hardware of {}, {} estimator, finds \
+        "Frame {frame} of scene {}: pushed with ({:.2}, {:.2}, {:.2}) N; the hardware of {}, {search} search, finds \
          ({:.2}, {:.2}, {:.2}) N.",
         scene.name,
         force[0],
         force[1],
         force[2],
         design.name,
-        design.algorithm.estimator,
         answer.resultant[0],
         answer.resultant[1],
         answer.resultant[2]

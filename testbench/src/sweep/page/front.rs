@@ -228,7 +228,7 @@ mod tests {
     #[test]
     fn long_names_are_broken_behind_a_comma() {
         let long = "reduced plan, no filter, grid search, 160 units, general";
-        assert_eq!(in_lines(long), ["reduced plan, no filter, grid search,", "160 units, general"]);
+        assert_eq!(in_lines(long), ["reduced plan, no filter, grid search, 160 units,", "general"]);
         assert_eq!(in_lines("paper, f3, line"), ["paper, f3, line"]);
     }
 
