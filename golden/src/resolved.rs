@@ -185,3 +185,20 @@ pub fn folder(file: &Path) -> &Path {
         _ => Path::new("."),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_are_the_new_ones_and_comments_stay() {
+        let gone = "[algorithm.correction]\nhidden = 4\nfile = \"a.csv\"\n";
+        let old = format!("# mine\n[algorithm]\nseed = 1 # gone\ngain = 1.0 # stays\n{gone}");
+        let new = "[algorithm]\ngain = 2.0\n";
+        let kept = "# mine\n[algorithm]\ngain = 2.0 # stays\n";
+        assert_eq!(with_comments(&old, new).as_deref(), Some(kept));
+        let correction = "[algorithm.correction]\nfile = \"b.csv\"\n";
+        let found = with_comments(&old, &format!("{new}{correction}"));
+        assert_eq!(found, Some(format!("{kept}{correction}")));
+    }
+}

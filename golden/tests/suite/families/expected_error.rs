@@ -46,7 +46,13 @@ fn compare(design: &mut Design, count: u64) {
 #[test]
 fn the_expected_error_holds_within_a_fifth() {
     let mut design = design("sensor1-fast");
+    let stated = design.algorithm.standard_error.unwrap();
     compare(&mut design, 20);
+    // The standard error is found as the file states it, with its part for the border.
+    let found = design.algorithm.standard_error.unwrap();
+    for (found, stated) in [(found.model, stated.model), (found.noise, stated.noise), (found.border, stated.border)] {
+        assert!((found / stated - 1.0).abs() < 0.1, "{found} {stated}");
+    }
     let sentence = design.expected_error_at(0.008).unwrap();
     let [median, most] = design.algorithm.expected_error.as_ref().unwrap().at(0.008);
     assert!(

@@ -62,3 +62,24 @@ fn a_bladder_tells_gains_curve_and_dead_taxels() {
         found.undetermined
     );
 }
+
+/// Each taxel reads the pressure and a share of what its row and its column read of it.
+#[test]
+fn a_bladder_is_read_through_crosstalk() {
+    let crossed = |keys: &str| design(&format!("{keys}\ntension = \"clipped\"\ncrosstalk = 0.02"), "");
+    let truth = crossed("pa_per_count = -10.0");
+    let pressures: Vec<f64> = [0.0, 8e3, 2e4].into_iter().flat_map(|pressure| [pressure; 8]).collect();
+    let delivered = |&pressure: &f64| {
+        let mut frame = vec![-pressure; 78];
+        truth.deliver(&mut frame);
+        frame
+    };
+    let frames: Vec<Vec<f64>> = pressures.iter().map(delivered).collect();
+    let forces = vec![[None; 3]; frames.len()];
+    let measured = Measured { pressures: pressures.into_iter().map(Some).collect(), forces, ..Measured::default() };
+    let found = fit_uniform(&crossed("pa_per_count = -8.0"), &frames, &measured).unwrap().design.input;
+    for taxel in [0, 33, 77] {
+        let [found, truth] = [&found, &truth.input].map(|input| input.to_pa(taxel, frames[20][taxel]));
+        assert!((found / truth - 1.0).abs() < 1e-3, "{taxel}: {found} {truth}");
+    }
+}
