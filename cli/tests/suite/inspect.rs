@@ -124,6 +124,24 @@ fn inspect_compares_the_gain_with_what_the_kernel_lacks() {
     }
 }
 
+/// By people's and machines' reports, and in the folder of a core.
+#[test]
+fn the_expected_error_is_told_wherever_a_design_is() {
+    let errors = "noise = [0.0, 0.01], median = [1.0, 5.0], p95 = [2.0, 22.0]";
+    let folder = folder_with_design(&format!("[algorithm]\nexpected_error = {{ {errors} }}"));
+    let told = "At a noise of 0.5 % expect the shear within 3.0 % of F_z (median; 95 %: 12)";
+    let said = |report: &Value| report["expected_error"].as_str().is_some_and(|said| said.starts_with(told));
+    let text = good(folder.path(), &["inspect", "pad.toml"]);
+    let line = format!("  error        {told});\n");
+    assert!(text.contains(&line) && text.lines().all(|line| line.chars().count() <= 110), "{text}");
+    let json = good(folder.path(), &["inspect", "pad.toml", "--json"]);
+    assert!(said(&serde_json::from_str(&json).unwrap()), "{json}");
+    good(folder.path(), &["generate", "pad.toml", "--out", "out"]);
+    let read = |file: &str| fs::read_to_string(folder.path().join("out").join(file)).unwrap();
+    assert!(read("README.md").contains(&format!("\n{told}")));
+    assert!(said(&serde_json::from_str(&read("metadata.json")).unwrap()));
+}
+
 #[test]
 fn inspect_warns_of_what_will_not_work_well() {
     let folder = tempfile::tempdir().unwrap();

@@ -83,6 +83,19 @@ fn the_calibration_takes_the_offsets_off() {
     let share = lines.lines().find_map(|line| line.strip_prefix("[sensor] noise = ")).expect("a share");
     let share: f64 = share.split("  #").next().unwrap().parse().unwrap();
     assert!((0.0019..0.0023).contains(&share), "{share}: two counts of a thousand");
+    // At this noise, not the design's, the error is told.
+    let errors = "noise = [0.0, 0.004, 0.02], median = [5.0, 5.0, 80.0], p95 = [9.0, 9.0, 90.0]";
+    let keys = format!("noise = 0.02\n[algorithm]\nexpected_error = {{ {errors} }}\n");
+    let told = path("told.toml");
+    fs::write(&told, text(&keys)).unwrap();
+    let contacts = ["--unloaded", "--loaded", &loaded];
+    for (loaded, words) in [(&contacts[..], " expect the shear within 5.0 % of F_z"), (&contacts[..1], "within 80 %")] {
+        let asked = [&["check", &told, "--frames", &rest], loaded].concat();
+        for json in [&[][..], &["--json"]] {
+            let lines = String::from_utf8(sptfra(&[&asked[..], json].concat()).stdout).unwrap();
+            assert!(lines.contains(words), "{lines}");
+        }
+    }
     let said = sptfra(&["check", &design, "--frames", &rest, "--unloaded", "--loaded", &rest]);
     let wrong = String::from_utf8(said.stderr).unwrap();
     assert!(!said.status.success() && wrong.contains("--loaded"), "{wrong}");
