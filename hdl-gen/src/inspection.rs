@@ -59,7 +59,7 @@ pub fn figures(plan: &Plan) -> Value {
         value["contacts"] = plan.design.algorithm.contacts.into();
     }
     if let Some(expected) = plan.design.expected_error() {
-        value["expected_error"] = expected.into();
+        value["expected_error"] = json!(expected);
     }
     if let Some((key, own)) = plan.estimator.slot().metadata().own {
         value[key] = own;

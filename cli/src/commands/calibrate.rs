@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use golden::calibrate::{ERROR_FRAMES, Work, calibrate, state_errors};
 use golden::choose::rebase_scenes;
-use golden::design::{Design, Estimator, Filter, StandardError, TrainingSet, is_name};
+use golden::design::{Design, Estimator, Expected, Filter, StandardError, TrainingSet, is_name};
 use golden::output::write_together;
 use golden::progress::Progress;
 use golden::resolved::{Resolved, folder};
@@ -76,7 +76,7 @@ struct Report<'a> {
     half_window: Option<[usize; 2]>,
     weights: usize,
     standard_error: Option<StandardError>,
-    expected_error: Option<String>,
+    expected_error: Option<Expected>,
 }
 
 /// Calibrates a design and writes the resolved one.

@@ -124,7 +124,8 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
     };
     writeln!(out, "  condition    C33 {}, A A^T {}: {verdict}", short(condition.c33), short(condition.aat))?;
     if let Some(expected) = plan.design.expected_error() {
-        writeln!(out, "  error        {}", expected.replace("); ", &format!(");\n{INDENT}")))?;
+        let expected = expected.to_string().replacen(" (median", &format!("\n{INDENT}(median"), 1);
+        writeln!(out, "  error        {expected}")?;
     }
     writeln!(out, "  kernel       {}", plan.estimator.slot().kernel_advice(&plan.design, INDENT))?;
     if let Some((layer, remedy)) = thin.as_deref().and_then(|thin| thin.split_once(": ")) {

@@ -190,7 +190,7 @@ fn lines(new: &Args, design: &Design, path: &Path) -> Vec<String> {
     let widest = next.iter().map(|(command, _)| command.len()).max().unwrap_or(0);
     let mut lines = vec![format!("{shown}: {}; edit it, then run", design.sensor)];
     lines.extend(next.iter().map(|(command, what)| format!("  {command:<widest$}  {what}")));
-    lines.extend(design.expected_error());
+    lines.extend(design.expected_error().map(|expected| expected.to_string()));
     if is_joint {
         lines.push("Gain and friction are fitted to this sensor.".to_owned());
         let trains = "sptfra calibrate trains a network that corrects the remaining error";

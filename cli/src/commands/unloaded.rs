@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use golden::check::{Beyond, beyond};
-use golden::design::Design;
+use golden::design::{Design, Expected};
 use golden::output::write_whole;
 use golden::resolved::{folder, keep_apart};
 use golden::rest::AtRest;
@@ -33,7 +33,7 @@ struct Report<'a> {
     noise_of_contacts: Option<f64>,
     /// At this noise, or the design's.
     #[serde(skip_serializing_if = "Option::is_none")]
-    expected_error: Option<String>,
+    expected_error: Option<Expected>,
 }
 
 /// Reports what each taxel reads at rest, and writes the calibration that takes it off.

@@ -89,12 +89,13 @@ fn the_calibration_takes_the_offsets_off() {
     let told = path("told.toml");
     fs::write(&told, text(&keys)).unwrap();
     let contacts = ["--unloaded", "--loaded", &loaded];
-    for (loaded, words) in [(&contacts[..], " expect the shear within 5.0 % of F_z"), (&contacts[..1], "within 80 %")] {
+    for (loaded, median, words) in [(&contacts[..], 5.0, "within 5.0 % of F_z"), (&contacts[..1], 80.0, "within 80 %")]
+    {
         let asked = [&["check", &told, "--frames", &rest], loaded].concat();
-        for json in [&[][..], &["--json"]] {
-            let lines = String::from_utf8(sptfra(&[&asked[..], json].concat()).stdout).unwrap();
-            assert!(lines.contains(words), "{lines}");
-        }
+        let said = |more: &[&str]| String::from_utf8(sptfra(&[&asked[..], more].concat()).stdout).unwrap();
+        assert!(said(&[]).contains(&format!(" expect the shear {words}")), "{}", said(&[]));
+        let report: serde_json::Value = serde_json::from_str(&said(&["--json"])).unwrap();
+        assert_eq!(report["expected_error"]["median_percent"], median);
     }
     let said = sptfra(&["check", &design, "--frames", &rest, "--unloaded", "--loaded", &rest]);
     let wrong = String::from_utf8(said.stderr).unwrap();

@@ -1,5 +1,7 @@
 //! The error of the tangential force that a design is to be expected to have, by noise.
 
+use std::fmt::{self, Display, Formatter};
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -54,33 +56,63 @@ impl ExpectedError {
     }
 }
 
+/// The error to be expected of a design at a noise.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Expected {
+    /// Standard deviation of a reading, as a share of the frame's largest reading.
+    pub noise: f64,
+    /// Median error of the tangential force, in percent of the normal force.
+    pub median_percent: f64,
+    /// What 95 % of the errors are below, in percent of the normal force.
+    pub p95_percent: f64,
+    /// The sentence's words on smoothing, and whether the noise is beyond what is known.
+    #[serde(skip)]
+    averaged: String,
+    #[serde(skip)]
+    is_beyond: bool,
+    #[serde(skip)]
+    advised: Option<f64>,
+}
+
+impl Display for Expected {
+    fn fmt(&self, to: &mut Formatter<'_>) -> fmt::Result {
+        let Self { noise, median_percent, p95_percent, averaged, is_beyond, advised } = self;
+        let within = if *is_beyond { "no better than" } else { "within" };
+        write!(
+            to,
+            "At a noise of {} %{averaged} expect the shear {within} {} % of F_z (median; 95 %: {})",
+            (1e4 * noise).round() / 100.0,
+            digits(*median_percent),
+            digits(*p95_percent)
+        )?;
+        if let Some(advised) = advised {
+            write!(to, "; smoothing = {ADVISED} would bring {}", digits(*advised))?;
+        }
+        write!(to, ".")
+    }
+}
+
 impl Design {
-    /// The error to be expected at the design's noise, in a sentence; nothing for a design without
-    /// `algorithm.expected_error`.
-    pub fn expected_error(&self) -> Option<String> {
+    /// The error to be expected at the design's noise; nothing of a design without `algorithm.expected_error`.
+    pub fn expected_error(&self) -> Option<Expected> {
         self.expected_error_at(self.input.noise)
     }
 
     /// The same where the readings' noise is this share of the frame's largest.
-    pub fn expected_error_at(&self, noise: f64) -> Option<String> {
+    pub fn expected_error_at(&self, noise: f64) -> Option<Expected> {
         let errors = self.algorithm.expected_error.as_ref()?;
         let smoothing = self.input.smoothing;
         let left = noise * smoothing::noise_left(smoothing);
-        let [median, most] = errors.at(left);
-        let averaged = if smoothing > 0 { format!(" and smoothing = {smoothing}") } else { String::new() };
-        let within = if errors.noise.last().is_some_and(|&last| left > last) { "no better than" } else { "within" };
+        let [median_percent, p95_percent] = errors.at(left);
         let [advised, _] = errors.at(noise * smoothing::noise_left(ADVISED));
-        let advice = if smoothing == 0 && advised < WORTH * median {
-            format!("; smoothing = {ADVISED} would bring {}", digits(advised))
-        } else {
-            String::new()
-        };
-        Some(format!(
-            "At a noise of {} %{averaged} expect the shear {within} {} % of F_z (median; 95 %: {}){advice}.",
-            (1e4 * noise).round() / 100.0,
-            digits(median),
-            digits(most)
-        ))
+        Some(Expected {
+            noise,
+            median_percent,
+            p95_percent,
+            averaged: if smoothing > 0 { format!(" and smoothing = {smoothing}") } else { String::new() },
+            is_beyond: errors.noise.last().is_some_and(|&last| left > last),
+            advised: (smoothing == 0 && advised < WORTH * median_percent).then_some(advised),
+        })
     }
 }
 

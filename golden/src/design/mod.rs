@@ -41,7 +41,7 @@ pub use calibration::Calibration;
 pub use checks::is_name;
 pub use curve::{Curve, MOST_SEGMENTS};
 pub use error::DesignError;
-pub use expected_error::ExpectedError;
+pub use expected_error::{Expected, ExpectedError};
 pub(crate) use files::Beside;
 pub use files::{CALIBRATION_FILE, CURVE_FILE, FileNames, WEIGHTS_FILE};
 pub use filter::{Choices, Filter, FilterKind, MatrixFilter, UnknownMatrixFilter};

@@ -5,7 +5,7 @@
 //
 // s = |MODEL, NOISE largest / stress_sum, BORDER e|; e: share of the stress at the grid's border beyond 1/32.
 // |x, y| is max(x, y, 7/8 of the larger + 1/2 of the smaller). No multiplier: each bit of a quotient adds its weight.
-// From start to the result, which holds until the next start: 49 cycles.
+// From start to the result, which holds until the next start: 53 cycles.
 
 `default_nettype none
 
@@ -25,7 +25,7 @@ module sptfra_standard_error #(
     output reg  signed [17:0] error_log // of base 2, from -10 to 2, 12 fraction bits: n + f for 2^n (1 + f)
 );
 
-    localparam [5:0] NOISE_END = 6'd16, BORDER_END = 6'd33, ADD = 6'd34, CLIP = 6'd36, LAST = 6'd48;
+    localparam [5:0] NOISE_END = 6'd16, BORDER_END = 6'd33, ADD = 6'd34, CLIP = 6'd40, LAST = 6'd52;
     localparam [17:0] LEAST = 18'd64; // 2^-10
     localparam [22:0] MOST = 23'd262143; // just below 4
 
@@ -44,15 +44,15 @@ module sptfra_standard_error #(
     wire [33:0] next_sum = {sum[32:0], 1'b0} + (fits ? {17'd0, weight} : 34'd0);
     wire [39:0] allowed = {5'd0, divisor[39:5]};
 
-    // ---- Two errors added, then with the third
+    // ---- Two errors added, then with the third: each in three cycles, for short paths
     reg [22:0] share_noise;
     reg [22:0] share_border;
     reg [22:0] total;
+    reg [22:0] larger;
+    reg [22:0] smaller;
+    reg [22:0] mixed;
     wire [22:0] other = (step == ADD) ? share_noise : share_border;
     wire is_larger = (total > other);
-    wire [22:0] larger = is_larger ? total : other;
-    wire [22:0] smaller = is_larger ? other : total;
-    wire [22:0] mixed = larger - {3'd0, larger[22:3]} + {1'b0, smaller[22:1]};
 
     // ---- Logarithm
     reg [17:0] mantissa;
@@ -82,7 +82,12 @@ module sptfra_standard_error #(
             if (step == BORDER_END) begin
                 share_border <= {2'd0, next_sum[33:13]};
             end
-            if ((step == ADD) || (step == ADD + 6'd1)) begin
+            if ((step == ADD) || (step == ADD + 6'd3)) begin
+                larger <= is_larger ? total : other;
+                smaller <= is_larger ? other : total;
+            end
+            mixed <= larger - {3'd0, larger[22:3]} + {1'b0, smaller[22:1]};
+            if ((step == ADD + 6'd2) || (step == ADD + 6'd5)) begin
                 total <= (mixed > larger) ? mixed : larger;
             end
             if (step == CLIP) begin

@@ -173,7 +173,7 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         value["dead_taxels"] = json!({ "taxels": map.dead.taxels, "weight_lsb": weight_lsb, "replaceable": map.room });
     }
     if let Some(expected) = plan.design.expected_error() {
-        value["expected_error"] = expected.into();
+        value["expected_error"] = json!(expected);
     }
     if let Some((key, own)) = estimator.own {
         value[key] = own;

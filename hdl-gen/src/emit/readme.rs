@@ -91,7 +91,7 @@ impl View {
             summary_words: SUMMARY_WORDS,
             status: status_bits().collect(),
             testbench: files.contains_key(&format!("sim/{}_tb.v", design.name)),
-            expected_error: design.expected_error(),
+            expected_error: design.expected_error().map(|expected| expected.to_string()),
         }
     }
 }

@@ -20,8 +20,6 @@ const LEAST: i64 = 1 << (SHARE_FRACTION - 10);
 /// Share of the stress that is allowed at the border, as a right shift.
 const BORDER_SHIFT: u32 = 5;
 const _: () = assert!(BORDER == 1.0 / (1 << BORDER_SHIFT) as f64);
-/// Cycles from the start to the result.
-pub const LATENCY: u64 = 50;
 
 /// Constants of a design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -88,4 +86,26 @@ fn weighed(part: i64, sum: i64, weight: i64) -> i64 {
 fn added(x: i64, y: i64) -> i64 {
     let (larger, smaller) = (x.max(y), x.min(y));
     larger.max(larger - (larger >> 3) + (smaller >> 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use golden::design::Design;
+
+    use crate::plan::Plan;
+
+    /// Cycles from a start to the result of `sptfra_standard_error`, which begins with the search.
+    const LATENCY: u64 = 54;
+
+    #[test]
+    fn no_search_ends_before_the_standard_error() {
+        for estimator in ["\"line\"", "\"joint\"\ngain = 1\nfriction_correction = [1, 0]"] {
+            let text = format!(
+                "format = 3\nname = \"least\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4, 4]\ndepth_mm = 3\n\
+                 [algorithm]\nestimator = {estimator}\n[hardware]\nlanes = 128\n"
+            );
+            let plan = Plan::new(&Design::from_toml(&text, "least").unwrap()).unwrap();
+            assert!(plan.timeline.search_cycles > LATENCY, "{estimator}");
+        }
+    }
 }

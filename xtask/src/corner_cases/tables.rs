@@ -82,7 +82,7 @@ pub fn groups(rows: &[Row]) -> Vec<Group> {
             Table::new(JOINT_HEADER).with(own.iter().map(|row| joint_cells(row)))
         };
         (!own.is_empty()).then(|| Group {
-            title: format!("{wanted}, {estimator} estimator"),
+            title: format!("{wanted}, {} search", if is_line { "line" } else { "grid" }),
             table: table.ending_in_words(),
             // The grid search needs the same matrices: it is refused for the same reason.
             refusals: if is_line { refusals(&own) } else { Vec::new() },
