@@ -49,7 +49,7 @@ test: lint-and-tools ## Formatting, lints, all tests of all crates
 .PHONY: test-long
 test-long: lint-and-tools ## As test, with every design and broken copy (three quarters of an hour)
 	SPTFRA_TEST_ALL=1 $(CARGO) test --workspace
-	$(CARGO) test -p hdl-gen -p testbench -p xtask --test suite -- --ignored
+	$(CARGO) test -p sptfra-hdl-gen -p sptfra-testbench -p xtask --test suite -- --ignored
 
 .PHONY: test-times
 test-times: test-tools ## All tests, one topic after the other, and the slowest ten (CONTRIBUTING.md)
@@ -57,7 +57,7 @@ test-times: test-tools ## All tests, one topic after the other, and the slowest 
 
 .PHONY: formal
 formal: tools ## Prove the stream rules and the frame handshake with Yosys and z3 (part of `make test`)
-	SPTFRA_TEST_ALL=1 $(CARGO) test -p testbench --test suite formal:: -- --nocapture
+	SPTFRA_TEST_ALL=1 $(CARGO) test -p sptfra-testbench --test suite formal:: -- --nocapture
 
 # The 4 x 3 design by either plan.
 SMALL_DESIGNS := $(addprefix $(TARGET)/trust/small-,paper.toml reduced.toml)

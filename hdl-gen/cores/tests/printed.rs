@@ -8,7 +8,7 @@ use hdl_gen::cores::Multiplier;
 use hdl_gen::emit::rtl::library;
 
 /// What rewrites the files.
-const RENEW: &str = "UPDATE_EXPECTED=1 cargo test -p hdl-cores --test printed";
+const RENEW: &str = "UPDATE_EXPECTED=1 cargo test -p sptfra-hdl-cores --test printed";
 
 fn rtl() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../rtl")

@@ -1,7 +1,7 @@
 //! The leaf cores: hardware whose widths do not depend on the geometry, the same in every design.
 //!
 //! Each file states what a core computes, bit for bit, and when; the integer model computes with these references, and
-//! a test compares each core's Verilog with its reference. The Verilog lies in `hdl-gen/rtl`; the package `hdl-cores`
+//! a test compares each core's Verilog with its reference. The Verilog lies in `hdl-gen/rtl`; the package `sptfra-hdl-cores`
 //! prints that of cores without parameters from descriptions in rust-hdl.
 
 pub mod axis_skid;

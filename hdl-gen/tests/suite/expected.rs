@@ -12,7 +12,7 @@ use hdl_gen::emit::{FileMap, VERSION, emit};
 use hdl_gen::plan::Plan;
 
 /// What writes the folder anew.
-const RENEW: &str = "UPDATE_EXPECTED=1 cargo test -p hdl-gen --test suite expected::";
+const RENEW: &str = "UPDATE_EXPECTED=1 cargo test -p sptfra-hdl-gen --test suite expected::";
 
 /// More would hide a change in the review that is to show it.
 const MOST_BYTES: usize = 450_000;

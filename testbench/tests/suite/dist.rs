@@ -116,7 +116,9 @@ fn a_release_is_cut_by_the_script() {
     let version = hdl_gen::emit::VERSION;
     assert_eq!(manifest, before[1].replacen(&format!("\nversion = \"{version}\""), "\nversion = \"9.1.0\"", 1));
     assert_eq!(citation, before[3].replace(&format!("version: {version}"), "version: 9.1.0"));
-    for name in ["golden", "hdl-cores", "hdl-gen", "sptfra", "sptfra-python", "sptfra-solver", "testbench", "xtask"] {
+    let crates = ["golden", "hdl-cores", "hdl-gen", "testbench"].map(|folder| format!("sptfra-{folder}"));
+    let others = ["sptfra", "sptfra-python", "sptfra-solver", "xtask"].map(str::to_owned);
+    for name in [crates, others].concat() {
         assert!(lock.contains(&format!("name = \"{name}\"\nversion = \"9.1.0\"\n")), "{name}");
     }
     assert_eq!(lock.matches("version = \"9.1.0\"").count(), 8);

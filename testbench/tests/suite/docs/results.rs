@@ -12,7 +12,7 @@ use crate::support::{in_parallel, workspace};
 
 const ABOUT: &str = "\
 # Predicted figures of the shipped designs. Simulation confirms cycles in every test; energy is an estimate.
-# command: UPDATE_EXPECTED=1 cargo test -p testbench --test suite docs::results
+# command: UPDATE_EXPECTED=1 cargo test -p sptfra-testbench --test suite docs::results
 design,latency_cycles,latency_us,interval_cycles,frames_per_second,dsp,ramb36,energy_uj
 ";
 

@@ -77,7 +77,7 @@ fn the_long_tests_are_called_and_try_all() {
     assert!(recipe.contains(&format!("\t{ALL}=1 $(CARGO) test --workspace\n")), "{recipe}");
     for crate_name in ["golden", "hdl-gen", "testbench"] {
         let left = left_to_it(&workspace().join(crate_name).join("tests"));
-        let run = recipe.contains(&format!(" -p {crate_name} ")) && recipe.ends_with("-- --ignored");
+        let run = recipe.contains(&format!(" -p sptfra-{crate_name} ")) && recipe.ends_with("-- --ignored");
         assert_eq!(left > 0, run, "{crate_name}: {left} tests are left to it");
     }
 }
