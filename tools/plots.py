@@ -265,8 +265,46 @@ def smoothing():
     return picture(left + 360 * 2 + 20, bottom + 54, "Error against frames averaged", parts)
 
 
+def drift():
+    """Error over the seconds since the touch, by what corrects creep and drift."""
+    table = [row for row in rows("drift.csv") if row["design"] == "sensor1-wide" and row["readings"] == "creep-20-drift"]
+    corrections = {
+        "none": "none",
+        "tare": "tare",
+        "baseline": "moving baseline",
+        "constant-tare": "creep removed, tare",
+    }
+    seconds = list(dict.fromkeys(row["seconds"] for row in table))
+    left, top, bottom, limit = 64, 66, 300, 70
+    parts = [text(left, 18, "medians over contacts under constant load, % of the normal force; friction times 100", size=12)]
+    for index, words in enumerate(corrections.values()):
+        parts.append(text(left + 150 * index, 36, f"● {words}", colour=COLOURS[index], size=12))
+    for number, (column, heading) in enumerate((("f_z", "F_z"), ("shear", "shear"), ("friction", "friction µ"))):
+        x0 = left + number * 270
+
+        def x(place, x0=x0):
+            return x0 + 210 * place / (len(seconds) - 1)
+
+        def y(error):
+            return bottom - (bottom - top) * float(error) / limit
+
+        parts.append(text(x0, 56, heading, more=' font-weight="bold"'))
+        for error in range(0, limit + 1, 10):
+            parts.append(line(x0, y(error), x0 + 210, y(error)))
+            parts.append(text(x0 - 8, y(error) + 4, str(error), "end", size=12))
+        for place, second in enumerate(seconds):
+            parts.append(text(x(place), bottom + 18, second, "middle", size=12))
+        parts.append(text(x0 + 105, bottom + 40, "seconds since the touch", "middle", size=12))
+        for index, correction in enumerate(corrections):
+            points = [row[column] for row in table if row["correction"] == correction]
+            path = " ".join(f"{x(place):.1f},{y(value):.1f}" for place, value in enumerate(points))
+            parts.append(f'<polyline points="{path}" fill="none" stroke="{COLOURS[index]}" stroke-width="2"/>')
+    return picture(left + 270 * 3, bottom + 54, "Error under creep and drift", parts)
+
+
 PLOTS = {
     "contact-kinds.svg": contact_kinds,
+    "drift.svg": drift,
     "error-latency.svg": error_latency,
     "finite-elements.svg": finite_elements,
     "noise.svg": noise,

@@ -75,7 +75,7 @@ fn frames(design: &Design, solver: &Solver, kind: Kind, percent: f64) -> Result<
     let mut random = ChaCha8Rng::seed_from_u64(SEEDS.start);
     let mut found = Vec::new();
     for frame in kind.frames(&design.sensor, FRICTION, SEEDS)? {
-        let solution = solver.solve(&noisy(design, &frame, percent, &mut random))?;
+        let solution = solver.solve(&noisy(design, &frame.stress, percent, &mut random))?;
         let [x, y] = [0, 1].map(|axis| solution.resultant[axis] - frame.force[axis]);
         let [error, standard_error] =
             [x.hypot(y), solution.standard_error].map(|newtons| newtons / solution.resultant[2].abs());

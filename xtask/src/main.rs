@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use sptfra::message;
 
-use commands::{bench, cells, confidence, corner_cases, mutants, noise, solver, stress};
+use commands::{bench, cells, confidence, corner_cases, drift, mutants, noise, solver, stress};
 
 /// Runs what only developers run.
 #[derive(Parser)]
@@ -26,6 +26,7 @@ enum Command {
     Mutants(mutants::Args),
     Noise(noise::Args),
     Confidence(confidence::Args),
+    Drift(drift::Args),
     Cells(cells::Args),
 }
 
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
         Command::Mutants(args) => mutants::run(&args),
         Command::Noise(args) => noise::run(&args),
         Command::Confidence(args) => confidence::run(&args),
+        Command::Drift(args) => drift::run(&args),
         Command::Cells(args) => cells::run(&args),
     }))
 }

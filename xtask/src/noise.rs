@@ -40,9 +40,9 @@ pub enum NoiseError {
     Solver(#[from] SolverError),
 }
 
-/// What the design's sensor reads of a frame, with noise in percent of its largest reading.
-pub(crate) fn noisy(design: &Design, frame: &SceneFrame, percent: f64, random: &mut ChaCha8Rng) -> Vec<f64> {
-    let mut stress = frame.stress.clone();
+/// What the design's sensor reads of stresses in pascals, with noise in percent of the largest reading.
+pub(crate) fn noisy(design: &Design, stress: &[f64], percent: f64, random: &mut ChaCha8Rng) -> Vec<f64> {
+    let mut stress = stress.to_vec();
     let tension = design.input.tension;
     let largest = stress.iter().fold(0.0_f64, |largest, stress| largest.max(tension.of(*stress).abs()));
     for stress in &mut stress {
@@ -58,7 +58,7 @@ fn errors(design: &Design, frames: &[SceneFrame], percent: f64) -> Result<Quanti
     let mut random = ChaCha8Rng::seed_from_u64(SEEDS.start);
     let mut errors = Vec::new();
     for frame in frames {
-        let found = solver.solve(&noisy(design, frame, percent, &mut random))?.resultant;
+        let found = solver.solve(&noisy(design, &frame.stress, percent, &mut random))?.resultant;
         let [x, y] = [0, 1].map(|axis| found[axis] - frame.force[axis]);
         errors.push(100.0 * x.hypot(y) / frame.force[2].abs());
     }

@@ -4,6 +4,7 @@ pub mod bench;
 pub mod cells;
 pub mod confidence;
 pub mod corner_cases;
+pub mod drift;
 pub mod mutants;
 pub mod noise;
 pub mod solver;

@@ -1,0 +1,370 @@
+//! Errors under constant load while readings creep or offsets drift, with ways to correct them.
+
+use std::fmt::Write;
+use std::ops::Range;
+
+use golden::design::Design;
+use golden::metrics::Quantiles;
+use golden::scene::{Kind, SceneFrame, normal};
+use golden::solver::{Solver, SolverError};
+use hdl_gen::emit::resolved_hash;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+use crate::noise::{NoiseError, noisy};
+
+/// Friction of the contacts.
+const FRICTION: f64 = 0.5;
+/// No design trained on round sliding contacts has seen these kinds.
+const KINDS: [Kind; 4] = [Kind::TiltedAlong, Kind::Held, Kind::Turned, Kind::Spinning];
+/// A contact of each kind, which no calibration draws.
+const SEEDS: Range<u64> = 92_000..92_040;
+/// Added to a seed for the contact before.
+const BEFORE: u64 = 1_000;
+/// Noise of a reading in percent of the frame's largest.
+const NOISE_PERCENT: f64 = 0.5;
+/// Seconds from frame to frame.
+const STEP: f64 = 0.1;
+const FRAMES_PER_SECOND: usize = 10;
+/// Frames of the contact before, of the pause behind it, and of the pause behind the tare.
+const HELD: usize = 300;
+const PAUSE: usize = 200;
+const TARED: usize = 20;
+/// Seconds after the touch.
+const TIMES: [u32; 5] = [0, 1, 5, 15, 60];
+/// A constant load raises readings by this share within so many seconds.
+const RISE: f64 = 1.0 / 3.0;
+const WITHIN: f64 = 15.0;
+/// Relaxation time in seconds: of one process, and of two of equal strength.
+const ONE: &[f64] = &[10.0];
+const TWO: &[f64] = &[3.0, 60.0];
+/// Standard deviation of an offset's drift in percent of the largest reading a minute, and minutes since the first tare.
+const DRIFT_PERCENT: f64 = 0.2;
+const DRIFTED: f64 = 10.0;
+/// Seconds in which the moving baseline follows to 1 - 1/e.
+const BASELINE: f64 = 60.0;
+/// Seconds of the step of load from which strength and time constant are found, a frame each.
+const STEP_OF_LOAD: u32 = 60;
+/// Time constants in seconds that are tried.
+const LEAST: f64 = 0.5;
+const MOST: f64 = 200.0;
+const TRIED: u32 = 600;
+
+/// What disturbs the readings.
+struct Disturbance {
+    name: &'static str,
+    /// Relaxation times in seconds, of equal strength; none: the sensor does not creep.
+    times: &'static [f64],
+    /// Standard deviation of a taxel's strength and time, as a share of them.
+    spread: f64,
+    drifts: bool,
+}
+
+const DISTURBANCES: [Disturbance; 7] = [
+    Disturbance { name: "steady", times: &[], spread: 0.0, drifts: false },
+    Disturbance { name: "drift", times: &[], spread: 0.0, drifts: true },
+    Disturbance { name: "creep-0", times: ONE, spread: 0.0, drifts: false },
+    Disturbance { name: "creep-20", times: ONE, spread: 0.2, drifts: false },
+    Disturbance { name: "creep-50", times: ONE, spread: 0.5, drifts: false },
+    Disturbance { name: "creep-two-20", times: TWO, spread: 0.2, drifts: false },
+    Disturbance { name: "creep-20-drift", times: ONE, spread: 0.2, drifts: true },
+];
+
+/// How readings are corrected before they are solved.
+const CORRECTIONS: [&str; 5] = ["none", "tare", "baseline", "constant", "constant-tare"];
+
+impl Disturbance {
+    /// The corrections that change something.
+    fn corrections(&self) -> usize {
+        match (self.times, self.drifts) {
+            ([], false) => 1,
+            ([], true) => 3,
+            _ => CORRECTIONS.len(),
+        }
+    }
+}
+
+/// What creep adds to a reading: it approaches `strength` times the stress.
+#[derive(Clone, Copy, Debug)]
+struct Creep {
+    strength: f64,
+    seconds: f64,
+    added: f64,
+}
+
+impl Creep {
+    fn load(&mut self, stress: f64, seconds: f64) {
+        let left = (-seconds / self.seconds).exp();
+        self.added = left * self.added + (1.0 - left) * self.strength * stress;
+    }
+}
+
+/// A taxel with creep of one or several time constants, and an offset that drifts.
+#[derive(Clone, Debug)]
+struct Taxel {
+    creep: Vec<Creep>,
+    offset: f64,
+    offset_per_second: f64,
+}
+
+impl Taxel {
+    fn load(&mut self, stress: f64, seconds: f64) {
+        for creep in &mut self.creep {
+            creep.load(stress, seconds);
+        }
+        self.offset += self.offset_per_second * seconds;
+    }
+
+    fn read(&self, stress: f64) -> f64 {
+        stress + self.offset + self.creep.iter().map(|creep| creep.added).sum::<f64>()
+    }
+}
+
+/// Taxels of a sensor on which a contact reads `largest`; factors of strength and time are log-normal with a mean of 1.
+fn taxels(of: &Disturbance, count: usize, largest: f64, random: &mut ChaCha8Rng) -> Vec<Taxel> {
+    let strength = RISE / of.times.iter().map(|seconds| 1.0 - (-WITHIN / seconds).exp()).sum::<f64>();
+    let deviation = of.spread.powi(2).ln_1p().sqrt();
+    let mut taxel = || {
+        let [strong, slow] = [(); 2].map(|()| (deviation * normal(random) - 0.5 * deviation.powi(2)).exp());
+        let creep = |seconds| Creep { strength: strong * strength, seconds: slow * seconds, added: 0.0 };
+        let per_minute = if of.drifts { 0.01 * DRIFT_PERCENT * largest * normal(random) } else { 0.0 };
+        Taxel {
+            creep: of.times.iter().map(|&seconds| creep(seconds)).collect(),
+            offset: DRIFTED * per_minute,
+            offset_per_second: per_minute / 60.0,
+        }
+    };
+    (0..count).map(|_| taxel()).collect()
+}
+
+/// Creep that all taxels have in common, found from a step of uniform load.
+fn common(taxels: &[Taxel]) -> Creep {
+    let mut all: Vec<Creep> = taxels.iter().flat_map(|taxel| taxel.creep.clone()).collect();
+    let rises: Vec<(f64, f64)> = (1..=STEP_OF_LOAD)
+        .map(|second| {
+            for creep in &mut all {
+                creep.load(1.0, 1.0);
+            }
+            (f64::from(second), all.iter().map(|creep| creep.added).sum::<f64>() / taxels.len() as f64)
+        })
+        .collect();
+    let fitted = |seconds: f64| {
+        let shape = |time: f64| 1.0 - (-time / seconds).exp();
+        let [cross, square] = rises.iter().fold([0.0; 2], |[cross, square], &(time, rise)| {
+            [cross + rise * shape(time), square + shape(time).powi(2)]
+        });
+        let strength = cross / square;
+        let error: f64 = rises.iter().map(|&(time, rise)| (rise - strength * shape(time)).powi(2)).sum();
+        (error, Creep { strength, seconds, added: 0.0 })
+    };
+    let tried = (0..=TRIED).map(|step| fitted(LEAST * (MOST / LEAST).powf(f64::from(step) / f64::from(TRIED))));
+    let none = (f64::INFINITY, Creep { strength: 0.0, seconds: LEAST, added: 0.0 });
+    tried.fold(none, |best, next| if next.0 < best.0 { next } else { best }).1
+}
+
+/// One taxel with all that corrects it.
+struct Channel {
+    taxel: Taxel,
+    /// Estimate of what creep adds.
+    creep: Creep,
+    baseline: f64,
+    /// Offsets that the tare takes off, without and with the correction of creep.
+    tare: [f64; 2],
+}
+
+impl Channel {
+    fn new(taxel: Taxel, creep: Creep) -> Self {
+        // So far behind is a baseline that has followed the drift for long.
+        let baseline = taxel.offset - BASELINE * taxel.offset_per_second;
+        Self { taxel, creep, baseline, tare: [0.0; 2] }
+    }
+
+    fn load(&mut self, stress: f64) {
+        let read = self.taxel.read(stress);
+        self.creep.load(read - self.creep.added, STEP);
+        self.baseline += (1.0 - (-STEP / BASELINE).exp()) * (read - self.baseline);
+        self.taxel.load(stress, STEP);
+    }
+
+    fn tare(&mut self) {
+        let read = self.taxel.read(0.0);
+        self.tare = [read, read - self.creep.added];
+    }
+
+    /// The reading by each of [`CORRECTIONS`].
+    fn corrected(&self, stress: f64) -> [f64; CORRECTIONS.len()] {
+        let read = self.taxel.read(stress);
+        let without_creep = read - self.creep.added;
+        [read, read - self.tare[0], read - self.baseline, without_creep, without_creep - self.tare[1]]
+    }
+}
+
+/// Errors of `F_z` and shear in percent of the normal force, and of the friction times 100.
+type Errors = [f64; 3];
+
+/// Errors of a contact by correction and time.
+fn of_contact(
+    (design, solver): (&Design, &Solver),
+    disturbance: &Disturbance,
+    [before, frame]: [&SceneFrame; 2],
+    seed: u64,
+) -> Result<Vec<Errors>, SolverError> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let largest = frame.stress.iter().fold(0.0_f64, |largest, stress| largest.max(stress.abs()));
+    let taxels = taxels(disturbance, frame.stress.len(), largest, &mut random);
+    let creep = common(&taxels);
+    let mut channels: Vec<Channel> = taxels.into_iter().map(|taxel| Channel::new(taxel, creep)).collect();
+    let unloaded = vec![0.0; frame.stress.len()];
+    let load = |channels: &mut [Channel], stress: &[f64], frames: usize| {
+        for (channel, &stress) in channels.iter_mut().zip(stress) {
+            (0..frames).for_each(|_| channel.load(stress));
+        }
+    };
+    load(&mut channels, &before.stress, HELD);
+    load(&mut channels, &unloaded, PAUSE);
+    for channel in &mut channels {
+        channel.tare();
+    }
+    load(&mut channels, &unloaded, TARED);
+    let mut found = Vec::new();
+    let mut passed = 0;
+    for seconds in TIMES {
+        load(&mut channels, &frame.stress, FRAMES_PER_SECOND * (seconds - passed) as usize);
+        passed = seconds;
+        let readings: Vec<_> =
+            channels.iter().zip(&frame.stress).map(|(channel, &stress)| channel.corrected(stress)).collect();
+        for correction in 0..disturbance.corrections() {
+            let stress: Vec<f64> = readings.iter().map(|by| by[correction]).collect();
+            let solution = solver.solve(&noisy(design, &stress, NOISE_PERCENT, &mut random))?;
+            let [x, y, z] = [0, 1, 2].map(|axis| solution.resultant[axis] - frame.force[axis]);
+            let percent = 100.0 / frame.force[2].abs();
+            found.push([percent * z.abs(), percent * x.hypot(y), 100.0 * (solution.mu - frame.friction).abs()]);
+        }
+    }
+    Ok(found)
+}
+
+/// The table of some designs, which go by the names of their files.
+///
+/// # Errors
+///
+/// [`NoiseError`]: a sensor without matrices or scenes.
+pub fn csv(designs: &[(String, Design)]) -> Result<String, NoiseError> {
+    let hashes: Vec<String> =
+        designs.iter().map(|(name, design)| format!("{name} {}", resolved_hash(design))).collect();
+    let kinds: Vec<String> = KINDS.iter().map(ToString::to_string).collect();
+    let mut text = format!(
+        "# Errors under constant load while readings creep or offsets drift, by correction, by the f64 solver.\n\
+         # f_z, shear: percent of the true normal force; friction: 100 times the error; median, 95 % and worst.\n\
+         # {} contacts of each kind at a friction of {FRICTION}: {}; noise {NOISE_PERCENT} % of the largest reading.\n\
+         # Another contact is held for {:.0} s before, and released {:.0} s before the touch; the tare is {:.0} s before it.\n\
+         # seconds: since the touch; readings of a taxel under a constant load rise by a third in {WITHIN} s.\n\
+         # creep-S: one relaxation time of {} s; each taxel's strength and time vary by S % (log-normal).\n\
+         # creep-two-S: two of {} and {} s, equally strong.\n\
+         # drift: offsets drift for {DRIFTED} minutes, each by its own {DRIFT_PERCENT} % of the largest reading a minute (deviation).\n\
+         # baseline: it follows the readings, loaded or not, with a time constant of {BASELINE} s.\n\
+         # constant: creep is removed by one strength and one time for all taxels, found from {STEP_OF_LOAD} s of uniform load.\n\
+         # command: cargo xtask drift DESIGNS --out results/drift.csv\n\
+         # designs: {}\n\
+         design,readings,correction,seconds,f_z,f_z_p95,f_z_worst,shear,shear_p95,shear_worst,friction,friction_p95,friction_worst\n",
+        SEEDS.count(),
+        kinds.join(", "),
+        HELD as f64 * STEP,
+        (PAUSE + TARED) as f64 * STEP,
+        TARED as f64 * STEP,
+        ONE[0],
+        TWO[0],
+        TWO[1],
+        hashes.join(", ")
+    );
+    for (name, design) in designs {
+        let solver = Solver::new(design)?;
+        let mut frames = Vec::new();
+        for kind in KINDS {
+            let before = kind.frames(&design.sensor, FRICTION, SEEDS.start + BEFORE..SEEDS.end + BEFORE)?;
+            frames.extend(before.into_iter().zip(kind.frames(&design.sensor, FRICTION, SEEDS)?));
+        }
+        for disturbance in &DISTURBANCES {
+            let errors: Vec<Vec<Errors>> = frames
+                .par_iter()
+                .enumerate()
+                .map(|(index, (before, frame))| {
+                    of_contact((design, &solver), disturbance, [before, frame], SEEDS.start + index as u64)
+                })
+                .collect::<Result<_, _>>()?;
+            let corrections = &CORRECTIONS[..disturbance.corrections()];
+            for (index, correction) in corrections.iter().enumerate() {
+                for (time, seconds) in TIMES.iter().enumerate() {
+                    let place = time * corrections.len() + index;
+                    // Writing to a String cannot fail.
+                    let _ = write!(text, "{name},{},{correction},{seconds}", disturbance.name);
+                    for quantity in 0..3 {
+                        let Quantiles { median, most, worst } =
+                            Quantiles::of(errors.iter().map(|of| of[place][quantity]).collect());
+                        let _ = write!(text, ",{median:.1},{most:.1},{worst:.1}");
+                    }
+                    text.push('\n');
+                }
+            }
+        }
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn one_taxel(name: &str, count: usize) -> Vec<Taxel> {
+        let of = DISTURBANCES.iter().find(|of| of.name == name).expect("a disturbance");
+        taxels(of, count, 1000.0, &mut ChaCha8Rng::seed_from_u64(3))
+    }
+
+    #[test]
+    fn a_constant_load_raises_readings_by_a_third_in_15_seconds() {
+        for name in ["creep-0", "creep-20", "creep-two-20"] {
+            let mut taxels = one_taxel(name, 4000);
+            for taxel in &mut taxels {
+                (0..150).for_each(|_| taxel.load(-600.0, STEP));
+            }
+            let mean = taxels.iter().map(|taxel| taxel.read(-600.0)).sum::<f64>() / 4000.0;
+            // A taxel's own time bends the mean a little.
+            let allowed = if name == "creep-0" { 1e-9 } else { 10.0 };
+            assert!((mean + 800.0).abs() < allowed, "{name}: {mean}");
+        }
+    }
+
+    #[test]
+    fn a_step_of_load_tells_strength_and_time() {
+        let found = common(&one_taxel("creep-0", 7));
+        assert!((found.seconds - ONE[0]).abs() < 0.1, "{found:?}");
+        assert!((found.strength - RISE / (1.0 - (-WITHIN / ONE[0]).exp())).abs() < 2e-3, "{found:?}");
+    }
+
+    #[test]
+    fn taxels_that_are_alike_are_corrected_whatever_the_load() {
+        let taxel = one_taxel("creep-0", 1).remove(0);
+        let mut channel = Channel::new(taxel.clone(), taxel.creep[0]);
+        for frame in 0..500 {
+            let stress = if frame % 170 < 60 { -900.0 } else { 20.0 };
+            let [read, _, _, without_creep, _] = channel.corrected(stress);
+            assert!((without_creep - stress).abs() < 1e-9, "{frame}: {without_creep}");
+            assert!(frame == 0 || (read - stress).abs() > 0.5, "{frame}: {read}");
+            channel.load(stress);
+        }
+    }
+
+    #[test]
+    fn a_tare_removes_drift_and_a_baseline_a_held_load() {
+        let mut channel =
+            Channel::new(one_taxel("drift", 1).remove(0), Creep { strength: 0.0, seconds: 1.0, added: 0.0 });
+        (0..100).for_each(|_| channel.load(0.0));
+        channel.tare();
+        let [read, tared, above, ..] = channel.corrected(-500.0);
+        assert!((read + 500.0).abs() > 5.0 && (tared + 500.0).abs() < 1e-9, "{read} {tared}");
+        assert!((above + 500.0).abs() < (read + 500.0).abs() / 5.0, "{above}");
+        (0..3000).for_each(|_| channel.load(-500.0));
+        assert!(channel.corrected(-500.0)[2].abs() < 10.0);
+    }
+}
