@@ -54,18 +54,17 @@ impl Census {
 impl Solver {
     /// Finds the bodies of the stress `b`, which is solved as that of one; none for a design that does not ask.
     ///
-    /// They are told apart by the normal forces of that solution. Where they are only counted it is by `|w|`, as in hardware.
-    pub(super) fn part(&self, b: &DVector<f64>, solution: &Solution, parted: &mut Parted) -> Census {
+    /// They are told apart by `|w|`, as hardware counts them, so that count and records agree in every design.
+    pub(super) fn part(&self, b: &DVector<f64>, parted: &mut Parted) -> Census {
         let Some(finder) = &self.finder else { return Census::default() };
         let Parted { found, weight, .. } = parted;
+        let normal = &*self.matrices.folded(MatrixName::C33inv) * b;
         weight.clear();
+        weight.extend(normal.iter().map(|force| (-force).max(0.0)));
         if finder.records() == 0 {
-            let normal = &*self.matrices.folded(MatrixName::C33inv) * b;
-            weight.extend(normal.iter().map(|force| (-force).max(0.0)));
             finder.count(weight, found);
             return Census { bodies: found.bodies, ..Census::default() };
         }
-        weight.extend(solution.field[2].iter().map(|force| (-force).max(0.0)));
         finder.find(weight, found);
         let taxels = found.taxels.first().copied().unwrap_or(0);
         Census { bodies: found.bodies, regions: found.taxels.len(), taxels }

@@ -118,7 +118,7 @@ impl Solver {
 
     /// Finds the bodies of the workspace's stress, solved as that of one; where there are several, solves them.
     fn tell_apart(&self, workspace: &mut Workspace, status: Status, solution: &mut Solution) -> Census {
-        let census = self.part(&workspace.b, solution, &mut workspace.parted);
+        let census = self.part(&workspace.b, &mut workspace.parted);
         if census.has_several() {
             self.solve_bodies(workspace, status, solution);
         }

@@ -62,7 +62,7 @@ fn one_body_is_solved_as_if_there_could_be_no_more() {
     }
 }
 
-/// Counted, a frame has the forces that it ever had, the number of bodies that telling them apart mostly finds, and a bit.
+/// Counted, a frame has the forces that it ever had, the number of bodies that telling them apart finds, and a bit.
 #[test]
 fn bodies_are_counted_where_they_are_solved_as_one() {
     for (name, plan) in [("sensor1-fast", PlanKind::Reduced), ("sensor2-none", PlanKind::Paper)] {
@@ -89,11 +89,9 @@ fn bodies_are_counted_where_they_are_solved_as_one() {
         });
         let marked = counted.iter().filter(|found| found.status.contains(Status::SEVERAL_CONTACTS)).count();
         assert!((14..=24).contains(&marked), "{name}: {marked}");
-        // By |w| the one, by the normal forces the other: at a limit they may differ.
-        let differ = counted.iter().zip(&several).filter(|(counted, several)| counted.bodies != several.bodies);
-        assert!(differ.count() <= 2, "{name}: more than one frame of 16, solved alone and together");
         for ((mut plain, counted), several) in plain.into_iter().zip(counted).zip(several) {
             assert_eq!(several.status.contains(Status::SEVERAL_CONTACTS), several.bodies > 1, "{name}");
+            assert_eq!(counted.bodies, several.bodies, "{name}: solved as one, and each for itself");
             if counted.bodies > 1 {
                 plain.status.insert(Status::SEVERAL_CONTACTS);
                 plain.bodies = counted.bodies;
@@ -138,12 +136,12 @@ fn each_body_has_its_own_forces() {
         ("sensor1-wide", Kind::Anyhow, [5.5, 18.0, 1.4]),
     ] {
         let [one, several] = [1, 4].map(|contacts| Solver::new(&design(name, contacts)).unwrap());
-        let frames: Vec<SceneFrame> = (0..24).map(|seed| frame(one.matrices().sensor(), kind, 7000 + seed)).collect();
+        let frames: Vec<SceneFrame> = (0..100).map(|seed| frame(one.matrices().sensor(), kind, 7000 + seed)).collect();
         let [one, several] = [one, several].map(|solver| judge(&solver, &frames));
         let BodyErrors { tangential, normal, right, within, .. } = several.bodies;
-        let said = format!("{name}, {kind:?}: {right} of 24, {tangential:.1?}, {normal:.1?}, {within:.0}");
+        let said = format!("{name}, {kind:?}: {right} of 100, {tangential:.1?}, {normal:.1?}, {within:.0}");
         let found = [tangential.median, tangential.most, normal.median];
-        assert!(right >= 20 && found.iter().zip(most).all(|(found, most)| *found <= most), "{said}");
+        assert!(right >= 84 && found.iter().zip(most).all(|(found, most)| *found <= most), "{said}");
         assert!(kind == Kind::Same || several.total.median < 0.5 * one.total.median, "{said}");
         // Without what is not known of the others it is 78 and 62 of the first two that tell it.
         assert!(within > 85.0, "{said}");
