@@ -1,8 +1,9 @@
 //! Arguments that several commands take.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
+use golden::design::is_name;
 use golden::words;
 use serde::de::DeserializeOwned;
 
@@ -27,6 +28,13 @@ pub fn with_ending(path: PathBuf) -> PathBuf {
     longer.push(".toml");
     let longer = PathBuf::from(longer);
     if !path.exists() && longer.is_file() { longer } else { path }
+}
+
+/// The name of a design in a file: a design of its own, beside whose hardware that of the first one stays. Nothing if the
+/// file is called what no module can be.
+pub fn name_of(file: &Path) -> Option<String> {
+    let name = file.file_stem()?.to_str()?.replace('-', "_");
+    is_name(&name).then_some(name)
 }
 
 /// A latency to meet.

@@ -3,13 +3,13 @@
 use golden::kernel;
 use serde_json::{Value, json};
 
-use crate::blocks::latency;
 use crate::cores::{DspBlock, OLDER_LONG_BITS};
 use crate::emit::boards::Board;
 use crate::emit::{nnz, predicted, products};
 use crate::plan::Plan;
 use crate::plan::product::Coefficients;
 use crate::plan::savings::savings;
+use crate::timing::latency;
 
 /// Rounding of the coefficients, as a share of their size, from which on it is told.
 const COARSE: f64 = 0.005;

@@ -11,5 +11,7 @@ pub mod estimators;
 pub mod inspection;
 pub mod model;
 pub mod new_design;
+pub mod parameters;
 pub mod plan;
+pub mod timing;
 pub mod write;

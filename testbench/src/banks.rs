@@ -72,7 +72,7 @@ pub fn random_curve(plan: &Plan, usual: &CurveMap, random: &mut ChaCha8Rng) -> C
         let sign = if random.random_bool(0.3) { 1.0 } else { -1.0 };
         let points = numbers.into_iter().zip(values).map(|(count, value)| [count, sign * value]).collect();
         // Some are too steep.
-        if let Ok(map) = usual.format.map(&Curve { points, law: None }) {
+        if let Ok(map) = CurveMap::new(usual.format, &Curve { points, law: None }) {
             return map;
         }
     }

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 use std::thread;
 
-use hdl_gen::plan::timing::INTERVAL_FRAMES;
+use hdl_gen::timing::INTERVAL_FRAMES;
 use serde::Serialize;
 
 use crate::compare::Comparison;

@@ -7,8 +7,8 @@ use std::path::Path;
 use golden::design::Design;
 use hdl_gen::emit::{EmitError, emit};
 use hdl_gen::model::Model;
-use hdl_gen::plan::timing::Timeline;
 use hdl_gen::plan::{Plan, PlanError};
+use hdl_gen::timing::Timeline;
 use serde::Serialize;
 use thiserror::Error;
 

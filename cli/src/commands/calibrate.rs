@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use golden::calibrate::{ERROR_FRAMES, Work, calibrate, state_errors};
 use golden::choose::rebase_scenes;
-use golden::design::{Design, Estimator, Expected, Filter, StandardError, TrainingSet, is_name};
+use golden::design::{Design, Estimator, Expected, Filter, StandardError, TrainingSet};
 use golden::output::write_together;
 use golden::progress::Progress;
 use golden::resolved::{Resolved, folder};
 use serde::Serialize;
 
 use super::calibrate_recorded::{self, Recordings};
-use crate::arguments::{design_file, word};
+use crate::arguments::{design_file, name_of, word};
 use crate::message::{self, json_or, say};
 
 const EXAMPLE: &str = "Example:\n  sptfra calibrate pad --out pad-calibrated.toml\n  sptfra calibrate pad --frames weights.csv --forces weights.forces.csv --out pad-fitted.toml";
@@ -149,11 +149,4 @@ pub fn run(args: &Args) -> message::Result {
         text
     };
     Ok(json_or(&report, *json, text)?.into())
-}
-
-/// The name of a design in a file: a design of its own, beside whose hardware that of the first one stays. Nothing if the
-/// file is called what no module can be.
-pub(super) fn name_of(file: &Path) -> Option<String> {
-    let name = file.file_stem()?.to_str()?.replace('-', "_");
-    is_name(&name).then_some(name)
 }

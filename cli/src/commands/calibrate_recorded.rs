@@ -13,8 +13,8 @@ use golden::progress::Progress;
 use golden::resolved::{Resolved, folder, keep_apart};
 use serde::Serialize;
 
-use super::calibrate::name_of;
 use super::recording::{LayoutArguments, Recording, warn};
+use crate::arguments::name_of;
 use crate::message::{self, json_or, say};
 
 /// Recordings with measured forces or pressures.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use toml::Table;
+use toml::{Table, Value};
 
 use super::checks::Check;
 use super::files::Beside;
@@ -20,10 +20,37 @@ pub(super) fn table(text: &str, origin: &str) -> Result<Table, DesignError> {
     Ok(table)
 }
 
+/// A base, as it was read.
+struct Base {
+    text: String,
+    /// Its place, for messages.
+    origin: String,
+}
+
+/// Puts the base's keys under those of `own`; `None` if it names no base.
+fn merge(check: &Check, own: &mut Table, beside: Beside<'_>) -> Result<Option<Base>, DesignError> {
+    let Some(name) = own.get("base").and_then(Value::as_str).map(str::to_owned) else { return Ok(None) };
+    let path = beside.path(&name);
+    let text = beside.read(&name).map_err(|source| {
+        let problem = format!("names {}, which cannot be read: {source}", path.display());
+        check.value("base", problem, "give the path of a design file from this one")
+    })?;
+    let origin = path.display().to_string();
+    let mut keys = table(&text, &origin)?;
+    if keys.contains_key("base") {
+        let problem = format!("names {origin}, which has a base itself");
+        return Err(check.value("base", problem, "name that one, and write here what is changed"));
+    }
+    base::relocate(&mut keys, &name);
+    own.remove("base");
+    base::under(own, keys);
+    Ok(Some(Base { text, origin }))
+}
+
 /// The keys of a design file, with those of its base; `beside` are the files that it names.
 pub(super) fn keys(text: &str, origin: &str, beside: Beside<'_>) -> Result<DesignKeys, DesignError> {
     let mut own = table(text, origin)?;
-    let Some(base) = base::merge(&Check { origin }, &mut own, beside)? else {
+    let Some(base) = merge(&Check { origin }, &mut own, beside)? else {
         return toml::from_str(text).map_err(|error| syntax_position(&error, text, origin));
     };
     own.try_into().map_err(|error: toml::de::Error| {
@@ -39,7 +66,7 @@ pub(super) fn keys(text: &str, origin: &str, beside: Beside<'_>) -> Result<Desig
 
 /// The files that a design names, and those of its base.
 pub(super) fn files_named_in(text: &str, origin: &str, beside: Beside<'_>) -> Result<Vec<PathBuf>, DesignError> {
-    let base = table(text, origin)?.get("base").and_then(toml::Value::as_str).map(str::to_owned);
+    let base = table(text, origin)?.get("base").and_then(Value::as_str).map(str::to_owned);
     let DesignKeys { sensor, algorithm, .. } = keys(text, origin, beside)?;
     let weights = algorithm.correction.map(|correction| correction.file);
     let points = match sensor.curve {

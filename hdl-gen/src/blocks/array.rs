@@ -1,5 +1,6 @@
 //! The array of SpMV lanes with its sequencer and its collector: `sptfra_spmv_array`.
 
+use crate::parameters::Parameters;
 use crate::plan::Plan;
 use crate::plan::format::address_bits;
 use crate::plan::layout::Place;
@@ -7,8 +8,8 @@ use crate::plan::memory::memory;
 use crate::plan::product::{Coefficients, DESTINATIONS, SUMS_DESTINATION, destination, destination_bits};
 use crate::plan::resources::BlockCost;
 
-use super::latency::TURN_GAP;
-use super::{Parameters, row_width};
+use super::row_width;
+use crate::timing::latency::TURN_GAP;
 
 /// Bits of a word in the MACs-per-row ROM: a count and what becomes of the sum.
 const SEGMENT_BITS: u32 = 16;
@@ -37,9 +38,9 @@ pub fn parameters(plan: &Plan) -> Parameters {
     let parameters = if schedule.ahead { parameters.flag("AHEAD", true) } else { parameters };
     parameters
         .number("DESTINATION_BITS", destination_bits(plan.has_field()).into())
-        .table("SHIFTS", 6, &shifts(plan))
-        .expression("ROM_DIR", "ROM_DIR")
-        .expression("ROM_NAME", format!("\"{}\"", plan.design.name))
+        .table("SHIFTS", 6, shifts(plan))
+        .outer("ROM_DIR")
+        .text("ROM_NAME", &plan.design.name)
 }
 
 /// A multiplier a lane, or two; the lanes' programs and operands.
@@ -99,15 +100,15 @@ fn products(plan: &Plan, parameters: Parameters) -> Parameters {
     parameters
         .count("PRODUCTS", products.len())
         .number("COUNT_BITS", bits.into())
-        .table("LENGTHS", bits, &of_each(&length, &name))
-        .table("WAITS", bits, &of_each(&wait, &|_| String::new()))
-        .table("BASES", 16, &of_each(&base, &|_| String::new()))
+        .table("LENGTHS", bits, of_each(&length, &name))
+        .table("WAITS", bits, of_each(&wait, &|_| String::new()))
+        .table("BASES", 16, of_each(&base, &|_| String::new()))
         .mask("OF_STRESS", &mask(&|index| place(index) == Some(Place::StressBank)))
         .mask("MARKS", &mask(&is_read_again))
         .mask("REWINDS", &mask(&|index| rereads(index).is_some()))
         .mask("MIRRORED", &mask(&|index| products[index].mirrored.is_some()))
         .mask("FRICTIONS", &mask(&|index| products[index].coefficients == Coefficients::Friction))
-        .wide("RESIDUAL_BANK", 16, plan.operands.residual_bank() as i64)
+        .signed("RESIDUAL_BANK", 16, plan.operands.residual_bank() as i64)
         .mask("LASTS", &mask(&|index| programs.iter().any(|program| program.end == index + 1)))
 }
 
@@ -118,10 +119,10 @@ fn programs(plan: &Plan, parameters: Parameters) -> Parameters {
     };
     parameters
         .count("PROGRAMS", programs.len())
-        .table("FIRSTS", 8, &of_each(&|index| programs[index].first))
-        .table("START_WORDS", 32, &of_each(&|index| programs[index].word))
-        .table("START_SEGMENTS", 16, &of_each(&|index| programs[index].segment))
-        .table("START_VISITS", 32, &of_each(&|index| programs[index].visit))
+        .table("FIRSTS", 8, of_each(&|index| programs[index].first))
+        .table("START_WORDS", 32, of_each(&|index| programs[index].word))
+        .table("START_SEGMENTS", 16, of_each(&|index| programs[index].segment))
+        .table("START_VISITS", 32, of_each(&|index| programs[index].visit))
 }
 
 /// Bits dropped by destination. One that no product has repeats the one before, so that it costs nothing.

@@ -3,8 +3,9 @@
 use golden::design::Samples;
 
 use crate::cores::{ACCUMULATOR_BITS, LONG_BITS};
+use crate::parameters::Parameters;
 use crate::plan::Plan;
-use crate::plan::calibration::CalibrationPlan;
+use crate::plan::calibration::{CalibrationPlan, CurveMap};
 use crate::plan::counts::{CountsPlan, EXPONENT_BITS};
 use crate::plan::crosstalk::{CrosstalkPlan, FACTOR_BITS};
 use crate::plan::curve::{self, CurvePlan, SEGMENT_BITS};
@@ -13,8 +14,8 @@ use crate::plan::gain::{GAIN_BITS, LARGEST_NUMBER};
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
 use crate::plan::streams::Streams;
-
-use super::{Parameters, calibration, latency};
+use crate::timing::durations::Arrival;
+use crate::timing::latency;
 
 /// What the ROM files of taxels' constants are called behind the design's name: one for each sample that is converted at a
 /// time.
@@ -47,7 +48,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         Samples::Int16 => parameters.number("SAMPLE", 1),
         Samples::Uint16 => parameters.number("SAMPLE", 2),
     };
-    let parameters = parameters.number("NUMBER_SHIFT", shift.into()).wide("NUMBER_BOUND", LONG_BITS, bound);
+    let parameters = parameters.number("NUMBER_SHIFT", shift.into()).signed("NUMBER_BOUND", LONG_BITS, bound);
     let parameters = match &plan.counts {
         Some(counts) => of_counts(parameters, counts),
         None => parameters,
@@ -65,14 +66,14 @@ pub fn parameters(plan: &Plan) -> Parameters {
         None => parameters,
     };
     let parameters = match &plan.calibration {
-        Some(of) => calibration::of_frames(parameters, of),
+        Some(of) => of_calibration(parameters, of),
         None => parameters,
     };
-    let parameters = parameters.wide("STRESS_BOUND", LONG_BITS, stress.bound);
+    let parameters = parameters.signed("STRESS_BOUND", LONG_BITS, stress.bound);
     let parameters = if plan.counts.is_none() && plan.dead.is_none() && plan.calibration.is_none() {
         parameters
     } else {
-        parameters.expression("ROM_DIR", "ROM_DIR").expression("ROM_NAME", format!("\"{}\"", plan.design.name))
+        parameters.outer("ROM_DIR").text("ROM_NAME", &plan.design.name)
     };
     parameters.cycles("EXPECTED_STAGES", beat_to_stress(plan))
 }
@@ -84,19 +85,6 @@ pub fn beat_to_stress(plan: &Plan) -> u64 {
     let per_taxel = plan.calibration.is_some() || plan.counts.as_ref().is_some_and(CountsPlan::per_taxel);
     let counts = plan.calibration.is_some() || plan.counts.is_some();
     latency::beat_to_stress(counts, per_taxel, in_ram.or(in_rom).map(curve::stages))
-}
-
-/// When what a frame brings is there, in cycles after its first beat enters Bz, streams never waiting.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Arrival {
-    /// Its last beat has entered Bz.
-    pub taken: u64,
-    /// Each element may be read, to be written to the lanes; while these write results it waits.
-    pub elements: Vec<u64>,
-    /// From the last element's turn to its write, in cycles in which the lanes write nothing.
-    pub turn_to_write: u64,
-    /// `CeAn` has its last stress.
-    pub last_stress: u64,
 }
 
 /// Cycles of Bz.
@@ -173,35 +161,64 @@ fn of_counts(parameters: Parameters, counts: &CountsPlan) -> Parameters {
     parameters
         .flag("COUNTS", true)
         .flag("PER_TAXEL", counts.per_taxel())
-        .wide("EXPONENT", EXPONENT_BITS, counts.exponents[0].into())
-        .wide("GAIN", GAIN_BITS, counts.gains[0].into())
+        .signed("EXPONENT", EXPONENT_BITS, counts.exponents[0].into())
+        .signed("GAIN", GAIN_BITS, counts.gains[0].into())
         .number("OFFSET_BITS", counts.offset_bits().into())
         .number("COUNT_SHIFT", i64::from(counts.shift) - counts.curve.as_ref().map_or(0, |curve| curve.lsb.into()))
-        .wide("FULL_SCALE", ACCUMULATOR_BITS, counts.full_scale)
+        .signed("FULL_SCALE", ACCUMULATOR_BITS, counts.full_scale)
 }
 
 fn of_curve(parameters: Parameters, curve: &CurvePlan) -> Parameters {
-    parameters.number("CURVE_LEVELS", curve.levels().into()).numbers("CURVE_KNOTS", LONG_BITS, &curve.knots()).wide(
+    parameters.number("CURVE_LEVELS", curve.levels().into()).numbers("CURVE_KNOTS", LONG_BITS, curve.knots()).signed(
         "CURVE_LAST",
         LONG_BITS,
         curve.last,
     )
 }
 
-fn of_crosstalk(parameters: Parameters, crosstalk: &CrosstalkPlan) -> Parameters {
-    let factors = crosstalk.factors.map(|factor| format!("{FACTOR_BITS}'d{factor}"));
+/// Of a calibration in RAM.
+fn of_calibration(parameters: Parameters, of: &CalibrationPlan) -> Parameters {
+    let parameters = parameters
+        .flag("COUNTS", true)
+        .flag("CALIBRATED", true)
+        .flag("PER_TAXEL", true)
+        .number("OFFSET_BITS", of.offset_bits().into())
+        .number("COUNT_SHIFT", i64::from(of.shift) - of.curve().map_or(0, |curve| curve.lsb.into()))
+        .signed("FULL_SCALE", ACCUMULATOR_BITS, of.full_scale);
+    let parameters = match &of.power_up.curve {
+        Some(curve) => of_bank_curve(parameters, curve),
+        None => parameters,
+    };
+    let map = &of.power_up.dead;
+    if map.room == 0 {
+        return parameters;
+    }
+    of_dead(parameters.count("REPLACEABLE", map.room).flag("MAPPED", true), &map.dead, map.room)
+}
+
+fn of_bank_curve(parameters: Parameters, map: &CurveMap) -> Parameters {
+    let knots = (0..map.format.room).map(|place| i64::from(map.segment(place)[0].cast_signed()));
     parameters
-        .number("CROSSTALK", crosstalk.fraction.into())
-        .expression("CROSSTALK_FACTORS", format!("{{{}}}", factors.join(", ")))
+        .number("CURVE_LEVELS", map.format.levels().into())
+        .numbers("CURVE_KNOTS", LONG_BITS, knots.collect())
+        .signed("CURVE_LAST", LONG_BITS, map.curve.last)
+        .unsigned("CURVE_COUNT", 7, map.curve.segments.len() as u64)
+        .signed("CURVE_LAST_VALUE", LONG_BITS, map.end)
+}
+
+fn of_crosstalk(parameters: Parameters, crosstalk: &CrosstalkPlan) -> Parameters {
+    parameters.number("CROSSTALK", crosstalk.fraction.into()).list(
+        "CROSSTALK_FACTORS",
+        FACTOR_BITS,
+        crosstalk.factors.iter().rev().map(|&factor| factor as u64),
+    )
 }
 
 /// Which taxels are replaced at power-up, in so many places.
-pub(super) fn of_dead(parameters: Parameters, dead: &DeadPlan, places: usize) -> Parameters {
+fn of_dead(parameters: Parameters, dead: &DeadPlan, places: usize) -> Parameters {
     let numbers = dead.taxels.iter().copied().chain(std::iter::repeat(0)).take(places);
-    let numbers: Vec<String> = numbers.map(|number| format!("16'd{number}")).collect();
-    let numbers: Vec<&str> = numbers.iter().rev().map(String::as_str).collect();
     parameters
-        .expression("REPLACED_COUNT", format!("4'd{}", dead.taxels.len()))
-        .expression("REPLACED_SHIFT", format!("5'd{}", dead.shift))
-        .expression("REPLACED_TAXELS", format!("{{{}}}", numbers.join(", ")))
+        .unsigned("REPLACED_COUNT", 4, dead.taxels.len() as u64)
+        .unsigned("REPLACED_SHIFT", 5, dead.shift.into())
+        .list("REPLACED_TAXELS", 16, numbers.map(|number| number as u64))
 }

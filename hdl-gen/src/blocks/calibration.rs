@@ -1,8 +1,9 @@
-//! A calibration in RAM: `sptfra_calibrate` in the core, the banks' control and its registers beside the core's.
+//! A calibration in RAM: the banks' control and its registers beside the core's.
 
-use crate::cores::{ACCUMULATOR_BITS, LONG_BITS};
+use crate::cores::LONG_BITS;
+use crate::parameters::Parameters;
 use crate::plan::Plan;
-use crate::plan::calibration::{CalibrationPlan, CurveMap};
+use crate::plan::calibration::CalibrationPlan;
 use crate::plan::counts::EXPONENT_BITS;
 use crate::plan::dead::WEIGHT_BITS;
 use crate::plan::format::address_bits;
@@ -10,40 +11,8 @@ use crate::plan::gain::GAIN_BITS;
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
 
-use super::{Parameters, bz};
-
 /// Bits of a taxel's sum and extremes while it is tared.
 const TARE_BITS: u32 = 37 + 2 * LONG_BITS;
-
-/// Parameters of `sptfra_bz` for a calibration in RAM.
-pub fn of_frames(parameters: Parameters, of: &CalibrationPlan) -> Parameters {
-    let parameters = parameters
-        .flag("COUNTS", true)
-        .flag("CALIBRATED", true)
-        .flag("PER_TAXEL", true)
-        .number("OFFSET_BITS", of.offset_bits().into())
-        .number("COUNT_SHIFT", i64::from(of.shift) - of.curve().map_or(0, |curve| curve.lsb.into()))
-        .wide("FULL_SCALE", ACCUMULATOR_BITS, of.full_scale);
-    let parameters = match &of.power_up.curve {
-        Some(curve) => of_curve(parameters, curve),
-        None => parameters,
-    };
-    let map = &of.power_up.dead;
-    if map.room == 0 {
-        return parameters;
-    }
-    bz::of_dead(parameters.count("REPLACEABLE", map.room).flag("MAPPED", true), &map.dead, map.room)
-}
-
-fn of_curve(parameters: Parameters, map: &CurveMap) -> Parameters {
-    let knots = (0..map.format.room).map(|place| i64::from(map.segment(place)[0].cast_signed()));
-    parameters
-        .number("CURVE_LEVELS", map.format.levels().into())
-        .numbers("CURVE_KNOTS", LONG_BITS, &knots.collect::<Vec<_>>())
-        .wide("CURVE_LAST", LONG_BITS, map.curve.last)
-        .expression("CURVE_COUNT", format!("7'd{}", map.curve.segments.len()))
-        .wide("CURVE_LAST_VALUE", LONG_BITS, map.end)
-}
 
 /// Whether banks have words behind the thresholds.
 pub fn has_more(of: &CalibrationPlan) -> bool {
@@ -60,10 +29,10 @@ pub fn control(of: &CalibrationPlan) -> Parameters {
     let parameters = Parameters::new()
         .count("TAXELS", of.taxels)
         .number("OFFSET_BITS", of.offset_bits().into())
-        .wide("OFFSET_LIMIT", 32, of.offset_limit)
-        .expression("CONTACT", format!("32'd{}", of.power_up.contact))
-        .expression("NOISE", format!("{LONG_BITS}'d{}", of.power_up.noise))
-        .expression("CRC", format!("32'h{:08x}", of.power_up.crc()))
+        .signed("OFFSET_LIMIT", 32, of.offset_limit)
+        .unsigned("CONTACT", 32, of.power_up.contact.into())
+        .unsigned("NOISE", LONG_BITS, of.power_up.noise.into())
+        .pattern("CRC", 32, of.power_up.crc().into())
         .count("REPLACEABLE", of.power_up.dead.room);
     match of.curve() {
         Some(curve) => parameters.count("CURVE_WORDS", curve.length()),
@@ -80,16 +49,14 @@ pub fn curve_register(of: &CalibrationPlan) -> Option<[u8; 3]> {
 /// Parameters of `sptfra_calibration_registers`.
 pub fn registers(of: &CalibrationPlan) -> Parameters {
     let parameters = Parameters::new()
-        .expression("WORDS", format!("16'd{}", of.words()))
-        .expression("SHIFT", format!("6'd{}", of.shift))
-        .expression("LSB", format!("8'd{}", lsb(of)))
-        .expression("OFFSET_LIMIT", format!("32'd{}", of.offset_limit))
-        .expression("COUNT_STEPS", format!("64'h{:016x}", of.count_steps.to_bits()))
-        .expression("REPLACEABLE", format!("4'd{}", of.power_up.dead.room));
+        .unsigned("WORDS", 16, of.words() as u64)
+        .unsigned("SHIFT", 6, of.shift.into())
+        .unsigned("LSB", 8, lsb(of).into())
+        .unsigned("OFFSET_LIMIT", 32, of.offset_limit as u64)
+        .pattern("COUNT_STEPS", 64, of.count_steps.to_bits())
+        .unsigned("REPLACEABLE", 4, of.power_up.dead.room as u64);
     match curve_register(of) {
-        Some([room, exponent, lsb]) => {
-            parameters.expression("CURVE", format!("{{8'd0, 8'd{lsb}, 8'd{exponent}, 8'd{room}}}"))
-        }
+        Some([room, exponent, lsb]) => parameters.list("CURVE", 8, [room, exponent, lsb, 0].map(u64::from)),
         None => parameters,
     }
 }

@@ -2,11 +2,9 @@
 
 use golden::design::Tension;
 
-use crate::cores::{LONG_BITS, SHORT_BITS};
+use crate::cores::SHORT_BITS;
+use crate::parameters::Parameters;
 use crate::plan::Plan;
-use crate::plan::format::SUM_BITS;
-
-use super::Parameters;
 
 /// Parameters of `sptfra_cean`.
 pub fn parameters(plan: &Plan) -> Parameters {
@@ -20,14 +18,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .flag("TENSION_READ", plan.design.input.tension == Tension::Read);
     let parameters = if plan.thresholds.error.is_some() { parameters.flag("WITH_ERROR", true) } else { parameters };
     parameters
-        .wide("PITCH_X", SHORT_BITS, pitch_x)
-        .wide("PITCH_Y", SHORT_BITS, pitch_y)
+        .signed("PITCH_X", SHORT_BITS, pitch_x)
+        .signed("PITCH_Y", SHORT_BITS, pitch_y)
         .cycles("EXPECTED_LATENCY", slot.contact_latency())
-}
-
-/// The design's thresholds as constants, a taxel's noise and the least sum `|b|` of a contact, in steps of the stress: those
-/// of every frame, unless a calibration in RAM brings them.
-pub fn thresholds(plan: &Plan) -> [String; 2] {
-    let thresholds = &plan.thresholds;
-    [format!("{LONG_BITS}'d{}", thresholds.taxel), format!("{SUM_BITS}'d{}", thresholds.contact)]
 }

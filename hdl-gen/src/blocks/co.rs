@@ -2,13 +2,14 @@
 
 use golden::parity::CLASSES;
 
+use crate::parameters::Parameters;
 use crate::plan::Plan;
 use crate::plan::memory::memory;
 use crate::plan::product::Vector;
 use crate::plan::resources::BlockCost;
 use crate::plan::vector_formats::ARM_BITS;
 
-use super::{Parameters, place};
+use super::place;
 
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
@@ -25,13 +26,13 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .count("ELEMENTS", plan.elements())
         .number("DATA_BITS", plan.design.hardware.data_bits.into())
         .count("OPERAND_DEPTH", plan.operands.words())
-        .table("STORE_BASES", 16, &bases)
+        .table("STORE_BASES", 16, bases)
         .mask("STORE_IN_BANK", &in_bank)
-        .wide("RESIDUAL_BANK", 16, plan.operands.residual_bank() as i64);
+        .signed("RESIDUAL_BANK", 16, plan.operands.residual_bank() as i64);
     if plan.arms.is_empty() {
         return parameters;
     }
-    parameters.expression("ROM_DIR", "ROM_DIR").expression("ROM_NAME", format!("\"{}\"", plan.design.name))
+    parameters.outer("ROM_DIR").text("ROM_NAME", &plan.design.name)
 }
 
 /// Where sums of torques are made of taxels' forces, a multiplier for each of a taxel's arms.

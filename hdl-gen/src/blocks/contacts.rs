@@ -1,10 +1,12 @@
 //! Contact counter beside We: `sptfra_contact_counter`, where the design counts contacts.
 
+use crate::parameters::Parameters;
 use crate::plan::Plan;
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
+use crate::timing::latency;
 
-use super::{Parameters, latency, row_width};
+use super::row_width;
 
 /// Frames whose weights have a place.
 const PLACES: usize = 2;

@@ -2,13 +2,12 @@
 
 use golden::parity::CLASSES;
 
+use crate::parameters::Parameters;
 use crate::plan::Plan;
 use crate::plan::memory::memory;
-use crate::plan::places::WEIGHT_PLACES;
 use crate::plan::resources::BlockCost;
 use crate::plan::vector_formats::field_shifts;
-
-use super::Parameters;
+use crate::timing::places::WEIGHT_PLACES;
 
 /// The module.
 pub fn module(plan: &Plan) -> &'static str {

@@ -1,8 +1,7 @@
 //! Frame-context FIFO, `sptfra_frame_context`: what a frame carries beside its numbers.
 
+use crate::parameters::Parameters;
 use crate::plan::Plan;
-
-use super::Parameters;
 
 /// The instance's parameters: which fields contexts hold beside the timestamp.
 pub fn parameters(plan: &Plan) -> Parameters {

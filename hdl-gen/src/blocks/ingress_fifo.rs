@@ -1,14 +1,11 @@
 //! Ingress FIFO of a core whose source has no back-pressure, `sptfra_ingress_fifo`. Other cores have a skid buffer there.
 
+use crate::parameters::Parameters;
 use crate::plan::Plan;
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
 use crate::plan::streams::WORD_BITS;
-
-use super::Parameters;
-
-/// Frames that wait.
-pub const FRAMES: usize = 2;
+use crate::timing::places::INGRESS_FRAMES;
 
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
@@ -20,7 +17,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
 /// source is held.
 pub fn cost(plan: &Plan) -> Option<BlockCost> {
     let streams = plan.streams();
-    let depth = FRAMES * (streams.beats_in() + 1);
+    let depth = INGRESS_FRAMES * (streams.beats_in() + 1);
     let ring = memory("waiting frames", 1, depth, (streams.words() * WORD_BITS + 1) as u32, false);
     streams.drops.then(|| BlockCost::new("Intake", &["sptfra_ingress_fifo"], 0).with([ring]))
 }

@@ -2,7 +2,7 @@
 //!
 //! The Verilog of a block is the same in every design (`hdl-gen/rtl`). Its file here states the parameters of its
 //! instance and what it costs, multipliers and memories. The cycles that it takes, which the schedule counts with before
-//! there is an instance, stand in [`latency`].
+//! there is an instance, stand in [`crate::timing::latency`].
 
 pub mod array;
 pub mod bz;
@@ -13,9 +13,7 @@ pub mod contacts;
 pub mod field;
 pub mod frame_context;
 pub mod ingress_fifo;
-pub mod latency;
 pub mod op;
-pub mod parameters;
 pub mod registers;
 pub mod turns;
 pub mod unfold;
@@ -24,14 +22,8 @@ pub mod we;
 use crate::plan::Plan;
 use crate::plan::format::address_bits;
 use crate::plan::layout::Place;
-use crate::plan::product::SUM_ROWS;
-use crate::plan::product::Vector;
+use crate::plan::product::{FEWEST_ELEMENTS, Vector};
 use crate::plan::resources::BlockCost;
-pub use parameters::Parameters;
-
-/// Elements of a vector, and rows of sums, for which the modules have room at least.
-pub const FEWEST_ELEMENTS: usize = 8;
-const _: () = assert!(SUM_ROWS <= FEWEST_ELEMENTS);
 
 /// What each block of the design takes, in the data's order.
 pub fn costs(plan: &Plan) -> Vec<BlockCost> {

@@ -1,12 +1,13 @@
 //! Op behind the estimator: summary, status and output of a frame.
 
+use crate::parameters::Parameters;
 use crate::plan::Plan;
 use crate::plan::format::{FRICTION_BITS, FRICTION_FRACTION};
 use crate::plan::resources::BlockCost;
 use crate::plan::vector_formats::field_shifts;
 
-use super::latency::{OUTPUT_LATENCY, SUMMARY_LATENCY};
-use super::{Parameters, field};
+use super::field;
+use crate::timing::latency::{OUTPUT_LATENCY, SUMMARY_LATENCY};
 
 /// Parameters of `sptfra_op`.
 pub fn parameters(plan: &Plan) -> Parameters {
@@ -19,7 +20,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .number("TORQUE_LSB", plan.formats.torque_lsb.into())
         .number("FIELD_LSB", field_lsb(plan).into());
     let parameters = match plan.thresholds.error {
-        Some(error) => parameters.flag("WITH_ERROR", true).wide("ERROR_LIMIT", 18, error.limit),
+        Some(error) => parameters.flag("WITH_ERROR", true).signed("ERROR_LIMIT", 18, error.limit),
         None => parameters,
     };
     let parameters = if plan.thresholds.thin { parameters.flag("THIN", true) } else { parameters };
@@ -30,10 +31,11 @@ pub fn parameters(plan: &Plan) -> Parameters {
         parameters
     };
     let parameters = match plan.thresholds.slip {
-        Some([limit, release]) => {
-            let friction = |value: i64| format!("{FRICTION_BITS}'d{value}");
-            parameters.expression("SLIP_LIMIT", friction(limit)).expression("SLIP_RELEASE", friction(release))
-        }
+        Some([limit, release]) => parameters.unsigned("SLIP_LIMIT", FRICTION_BITS, limit as u64).unsigned(
+            "SLIP_RELEASE",
+            FRICTION_BITS,
+            release as u64,
+        ),
         None => parameters,
     };
     parameters.cycles("EXPECTED_SUMMARY_LATENCY", SUMMARY_LATENCY).cycles("EXPECTED_OUTPUT_LATENCY", OUTPUT_LATENCY)

@@ -2,7 +2,8 @@
 
 use serde::{Serialize, Serializer};
 
-use super::Parameters;
+use crate::parameters::Base;
+use crate::parameters::Parameters;
 use crate::plan::Plan;
 
 /// Version of the register map: one more whenever a register moves or changes its meaning.
@@ -20,8 +21,7 @@ struct Constant {
     name: &'static str,
     /// As wide as its field.
     bits: u32,
-    /// `d` or `h`, as in Verilog.
-    base: char,
+    base: Base,
     digits: String,
 }
 
@@ -33,8 +33,9 @@ impl Constants {
     /// Those of a design with the given hash of sixteen hexadecimal digits.
     pub fn new(plan: &Plan, hash: &str) -> Self {
         let (design, hardware) = (&plan.design, &plan.design.hardware);
-        let decimal = |name, bits, value: &dyn ToString| Constant { name, bits, base: 'd', digits: value.to_string() };
-        let hexadecimal = |name, bits, digits: String| Constant { name, bits, base: 'h', digits };
+        let decimal =
+            |name, bits, value: &dyn ToString| Constant { name, bits, base: Base::Decimal, digits: value.to_string() };
+        let hexadecimal = |name, bits, digits: String| Constant { name, bits, base: Base::Hexadecimal, digits };
         let full_scale = (hardware.full_scale_pa as f32).to_bits();
         Self(vec![
             decimal("MAP_VERSION", 8, &MAP_VERSION),
@@ -63,7 +64,7 @@ impl Constants {
     /// The parameters of the bank's instance.
     pub fn parameters(&self) -> Parameters {
         self.0.iter().fold(Parameters::new(), |all, Constant { name, bits, base, digits }| {
-            all.expression(name, format!("{bits}'{base}{digits}"))
+            all.digits(name, *bits, *base, digits.clone())
         })
     }
 }

@@ -2,10 +2,9 @@
 
 use golden::design::Optimise;
 
+use crate::parameters::Parameters;
 use crate::plan::Plan;
-use crate::plan::places::places;
-
-use super::Parameters;
+use crate::timing::places::places;
 
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {

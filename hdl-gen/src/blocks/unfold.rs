@@ -1,8 +1,7 @@
 //! Results to taxels: `sptfra_unfold`.
 
+use crate::parameters::Parameters;
 use crate::plan::Plan;
-
-use super::Parameters;
 
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {

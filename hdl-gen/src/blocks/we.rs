@@ -1,10 +1,11 @@
 //! We, the weights: `sptfra_we`.
 
+use crate::parameters::Parameters;
 use crate::plan::Plan;
 use crate::plan::product::Vector;
 use crate::plan::resources::BlockCost;
 
-use super::{Parameters, place};
+use super::place;
 
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {

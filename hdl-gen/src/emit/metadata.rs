@@ -3,12 +3,12 @@
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::blocks::latency;
 use crate::plan::energy::Energy;
 use crate::plan::product::{Product, Vector};
 use crate::plan::schedule::Window;
 use crate::plan::streams::WORD_BITS;
 use crate::plan::{Plan, words};
+use crate::timing::latency;
 
 use super::{EmitError, FileMap, VERSION, registers};
 

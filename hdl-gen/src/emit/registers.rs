@@ -3,12 +3,13 @@
 use serde::Serialize;
 use tera::Context;
 
+use crate::blocks::calibration;
 use crate::blocks::registers::Constants;
-use crate::blocks::{Parameters, calibration};
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
 use crate::plan::format::address_bits;
 
+use super::instance::verilog;
 use super::template::{design_module, one};
 use super::{EmitError, FileMap};
 
@@ -68,7 +69,7 @@ struct View<'a> {
     /// Whether frames that find no room are dropped.
     overrun: bool,
     /// Parameters of the bank.
-    registers: Parameters,
+    registers: String,
     /// Of a calibration in RAM.
     calibration: Option<CalibrationView>,
 }
@@ -76,8 +77,8 @@ struct View<'a> {
 /// What the templates say of a calibration in RAM.
 #[derive(Serialize)]
 struct CalibrationView {
-    control: Parameters,
-    registers: Parameters,
+    control: String,
+    registers: String,
     /// Highest bits of a taxel's number and of an offset.
     taxel_top: u32,
     offset_top: u32,
@@ -103,8 +104,8 @@ impl CalibrationView {
         let steps = of.count_steps.to_bits();
         let first = of.power_up.gain_words().next().unwrap_or_default();
         Self {
-            control: calibration::control(of),
-            registers: calibration::registers(of),
+            control: verilog(&calibration::control(of)),
+            registers: verilog(&calibration::registers(of)),
             taxel_top: address_bits(of.taxels) - 1,
             offset_top: of.offset_bits() - 1,
             words: of.words(),
@@ -141,7 +142,7 @@ impl<'a> View<'a> {
             stream_bits: plan.streams().bits,
             words: plan.streams().words(),
             overrun: plan.streams().drops,
-            registers: constants.parameters(),
+            registers: verilog(&constants.parameters()),
             calibration: plan.calibration.as_ref().map(CalibrationView::new),
             constants,
         }

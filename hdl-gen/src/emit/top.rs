@@ -6,15 +6,16 @@ use tera::Context;
 use golden::design::{Filter, Samples};
 
 use crate::blocks::{
-    Parameters, array, bz, calibration, cean, co, contacts, field, frame_context, ingress_fifo, op, row_width, turns,
-    unfold, we,
+    array, bz, calibration, cean, co, contacts, field, frame_context, ingress_fifo, op, row_width, turns, unfold, we,
 };
+use crate::cores::LONG_BITS;
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
-use crate::plan::format::address_bits;
+use crate::plan::format::{SUM_BITS, address_bits};
 use crate::plan::streams::Intake;
 use crate::plan::words::status_bits;
 
+use super::instance::verilog;
 use super::template::design_module;
 use super::{EmitError, debug, registers};
 
@@ -47,7 +48,7 @@ struct View {
     dead_command_bits: u32,
     dead_result_bits: u32,
     /// Of an ingress FIFO that drops frames, its parameters.
-    overrun: Option<Parameters>,
+    overrun: Option<String>,
     /// Bits and bytes of a beat, 32-bit words of it, samples of it; bits of a sample and what it is.
     stream_bits: usize,
     stream_bytes: usize,
@@ -64,8 +65,8 @@ struct View {
     samples_from: &'static str,
     /// Whether each frame has a scale of its own.
     scaled: bool,
-    context: Parameters,
-    /// Thresholds of the design: a taxel's noise, the least sum `|b|` of a contact.
+    context: String,
+    /// Thresholds of every frame, unless a calibration in RAM brings them: a taxel's noise, the least sum `|b|` of a contact.
     noise: String,
     contact: String,
     /// Dead taxels of the design.
@@ -99,20 +100,20 @@ struct View {
     vector_bits: usize,
     u_values: String,
 
-    bz: Parameters,
-    cean: Parameters,
-    turns: Parameters,
-    array: Parameters,
-    unfold: Parameters,
-    we: Parameters,
-    co: Parameters,
+    bz: String,
+    cean: String,
+    turns: String,
+    array: String,
+    unfold: String,
+    we: String,
+    co: String,
     estimator_module: &'static str,
-    estimator_parameters: Parameters,
+    estimator_parameters: String,
     field_module: &'static str,
-    field_parameters: Parameters,
+    field_parameters: String,
     /// Of the contact counter, if there is one.
-    contacts: Option<Parameters>,
-    op: Parameters,
+    contacts: Option<String>,
+    op: String,
 }
 
 impl View {
@@ -124,7 +125,8 @@ impl View {
         let streams = plan.streams();
         let unpack = streams.intake == Intake::Unpacked;
         let [dead_command_bits, dead_result_bits] = plan.calibration.as_ref().map_or([0, 0], calibration::dead_bits);
-        let [noise, contact] = cean::thresholds(plan);
+        let estimator = slot.parameters(design, plan.ways());
+        let estimator = plan.thresholds.error.iter().fold(estimator, |parameters, error| error.parameters(parameters));
         let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
         Self {
             control: hardware.control,
@@ -141,7 +143,7 @@ impl View {
             offset_bits: plan.calibration.as_ref().map_or(0, CalibrationPlan::offset_bits),
             dead_command_bits,
             dead_result_bits,
-            overrun: streams.drops.then(|| ingress_fifo::parameters(plan)),
+            overrun: streams.drops.then(|| verilog(&ingress_fifo::parameters(plan))),
             stream_bits: streams.bits,
             stream_bytes: streams.bits / 8,
             words: streams.words(),
@@ -154,9 +156,9 @@ impl View {
             unpack,
             samples_from: if unpack { "sample" } else { "in" },
             scaled: plan.scales_frames(),
-            context: frame_context::parameters(plan),
-            noise,
-            contact,
+            context: verilog(&frame_context::parameters(plan)),
+            noise: format!("{LONG_BITS}'d{}", plan.thresholds.taxel),
+            contact: format!("{SUM_BITS}'d{}", plan.thresholds.contact),
             dead: plan.dead.as_ref().map_or(0, |dead| dead.taxels.len()),
             field: plan.has_field(),
             latency_cycles: timeline.latency_cycles,
@@ -185,23 +187,19 @@ impl View {
             vector_bits: plan.ways() * hardware.data_bits as usize,
             u_values: u_values(plan),
 
-            bz: bz::parameters(plan),
-            cean: cean::parameters(plan),
-            turns: turns::parameters(plan),
-            array: array::parameters(plan),
-            unfold: unfold::parameters(plan),
-            we: we::parameters(plan),
-            co: co::parameters(plan),
+            bz: verilog(&bz::parameters(plan)),
+            cean: verilog(&cean::parameters(plan)),
+            turns: verilog(&turns::parameters(plan)),
+            array: verilog(&array::parameters(plan)),
+            unfold: verilog(&unfold::parameters(plan)),
+            we: verilog(&we::parameters(plan)),
+            co: verilog(&co::parameters(plan)),
             estimator_module: slot.module(),
-            estimator_parameters: plan
-                .thresholds
-                .error
-                .iter()
-                .fold(slot.parameters(design, plan.ways()), |parameters, error| error.parameters(parameters)),
+            estimator_parameters: verilog(&estimator),
             field_module: field::module(plan),
-            field_parameters: field::parameters(plan),
-            contacts: design.algorithm.count_contacts.then(|| contacts::parameters(plan)),
-            op: op::parameters(plan),
+            field_parameters: verilog(&field::parameters(plan)),
+            contacts: design.algorithm.count_contacts.then(|| verilog(&contacts::parameters(plan))),
+            op: verilog(&op::parameters(plan)),
         }
     }
 }

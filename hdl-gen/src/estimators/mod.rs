@@ -12,7 +12,7 @@ use golden::design::{Design, Estimator, PlanKind};
 
 use joint::JointPlan;
 use line::LinePlan;
-pub use slot::{Cells, Contact, Found, Given, Metadata, Seen, Slot, Stage, WEIGHT_BITS};
+pub use slot::{Cells, Contact, Found, Given, Metadata, Seen, Slot, WEIGHT_BITS};
 
 /// The estimator of a design, with its constants.
 #[derive(Clone, Debug)]

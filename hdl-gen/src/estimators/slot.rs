@@ -5,10 +5,11 @@ use golden::products::ByPq;
 use golden::sensor::Sensor;
 use serde_json::Value;
 
-use crate::blocks::parameters::Parameters;
 use crate::cores::SHORT_BITS;
+use crate::parameters::Parameters;
 use crate::plan::format::{Format, address_bits};
 use crate::plan::resources::BlockCost;
+use crate::timing::durations::Stage;
 
 /// Width of a weight in the ROM files of an estimator.
 pub const WEIGHT_BITS: u32 = SHORT_BITS;
@@ -100,15 +101,6 @@ impl Cells {
     pub fn tree_levels(&self) -> u32 {
         if self.cells == 1 { 0 } else { address_bits(self.cells) }
     }
-}
-
-/// A stage of the search: it has a frame of its own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Stage {
-    /// From start to end, in cycles.
-    pub cycles: u64,
-    /// Cycles for which the next stage still needs it, from when it has taken the frame. One cycle later it may begin anew.
-    pub shows: u64,
 }
 
 /// An estimator's part of `metadata.json`.

@@ -7,6 +7,7 @@ use super::calibration::CalibrationPlan;
 use super::counts::CountsPlan;
 use super::crosstalk::CrosstalkPlan;
 use super::dead::DeadPlan;
+use super::durations::durations;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
 use super::filtered::Filtered;
 use super::format::{FRICTION_FRACTION, Factors, Format, MANY_LANES, pow2};
@@ -18,12 +19,12 @@ use super::quantise::{Quantised, quantise, taxel_force_n};
 use super::resources::Resources;
 use super::schedule::Schedule;
 use super::standard_error::StandardErrorPlan;
-use super::timing::Timeline;
 use super::vector_formats::{Formats, arms};
-use super::{Condition, Nnz, Plan, Thresholds, control, elements, ways};
+use super::{Condition, Nnz, Plan, Thresholds, elements, ways};
 use crate::blocks;
 use crate::cores::{DspBlock, LONG_BITS, Multiplier};
 use crate::estimators::{EstimatorPlan, Given};
+use crate::timing::{Timeline, control};
 
 /// Words that do not fit one multiplier a lane have hardware where two make one product.
 pub(super) fn check_widths(design: &Design) -> Result<(), PlanError> {
@@ -110,7 +111,7 @@ impl Work {
             timeline: Timeline::default(),
             resources: Resources::default(),
         };
-        plan.timeline = control::timeline(&plan);
+        plan.timeline = control::timeline(&durations(&plan), plan.schedule.issue_cycles());
         plan.resources = Resources::of(blocks::costs(&plan), DspBlock::of_part(&plan.design.hardware.part));
         plan
     }

@@ -5,13 +5,14 @@ mod curve_map;
 mod dead_map;
 
 pub use bank::Bank;
-pub use curve_map::{CurveFormat, CurveMap};
+pub use curve_map::CurveMap;
 pub use dead_map::DeadMap;
 
 use golden::design::{Calibration, CalibrationIn, Design};
 use serde::Serialize;
 
 use super::counts::OFFSET_FULL_SCALES;
+use super::curve_format::CurveFormat;
 use super::dead::DeadPlan;
 use super::format::{Format, largest, pow2};
 pub use super::gain::Reading;
@@ -51,7 +52,7 @@ impl CalibrationPlan {
     ///
     /// # Errors
     /// [`PlanError::BankOffset`] for an offset beyond what a bank takes; [`PlanError::Contact`] for a contact threshold;
-    /// those of [`CurveFormat::map`].
+    /// those of [`CurveMap::new`].
     pub fn new(design: &Design, stress: Format, thresholds: &Thresholds) -> Result<Option<Self>, PlanError> {
         // Behind a curve a count is a pascal.
         let per_count = design.input.pa_per_count.or(design.input.curve.as_ref().map(|_| 1.0));
@@ -59,7 +60,7 @@ impl CalibrationPlan {
             return Ok(None);
         };
         let curve = design.input.curve.as_ref();
-        let curve = curve.map(|curve| CurveFormat::new(design, curve).map(curve)).transpose()?;
+        let curve = curve.map(|curve| CurveMap::new(CurveFormat::new(design, curve), curve)).transpose()?;
         let offset_limit = OFFSET_FULL_SCALES * stress.bound;
         let Scale { shift, full_scale } =
             Scale::new(stress, offset_limit, curve.as_ref().map(|curve| curve.format.lsb))

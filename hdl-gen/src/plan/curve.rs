@@ -4,14 +4,12 @@ use golden::design::{Curve, Design};
 use serde::Serialize;
 
 use super::PlanError;
-use super::calibration::CurveFormat;
+use super::curve_format::CurveFormat;
 use super::format::{Format, largest, pow2, round_shift};
 use super::gain::{GAIN_BITS, Gain};
 use crate::cores::LONG_BITS;
 use crate::cores::float_to_fixed::{self, Converted};
 
-/// Width of a count on the curve: the difference of two is the longer operand of a multiplier.
-pub const COUNT_BITS: u32 = LONG_BITS - 1;
 /// Width of the curve's value, the next multiplier's longer operand.
 const VALUE_BITS: u32 = LONG_BITS;
 /// Most bits dropped after the product.

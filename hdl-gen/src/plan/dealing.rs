@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BinaryHeap, VecDeque};
 
 use super::lane::{LaneProgram, MAX_SEGMENT, RESULT_PLACES, Segment, SegmentKind, Visit};
 use super::matrix::{Entry, QuantisedMatrix};
-use crate::blocks::latency::ISSUE_TO_RESULT;
+use crate::timing::latency::ISSUE_TO_RESULT;
 
 /// A piece of a row as dealt to a lane, before its time is known.
 struct Piece {

@@ -5,12 +5,13 @@
 
 mod build;
 pub mod calibration;
-mod control;
 pub mod counts;
 pub mod crosstalk;
 pub mod curve;
+mod curve_format;
 pub mod dead;
 mod dealing;
+mod durations;
 pub mod energy;
 mod error;
 pub mod filtered;
@@ -22,7 +23,6 @@ pub mod matrix;
 pub mod memory;
 mod need;
 pub mod passes;
-pub mod places;
 pub mod product;
 pub mod quantise;
 pub mod resources;
@@ -30,7 +30,6 @@ pub mod savings;
 pub mod schedule;
 pub mod standard_error;
 pub mod streams;
-pub mod timing;
 pub mod vector_formats;
 pub mod words;
 
@@ -40,6 +39,7 @@ use golden::parity::{CLASSES, Quads};
 use serde::Serialize;
 
 use crate::estimators::EstimatorPlan;
+use crate::timing::Timeline;
 use calibration::CalibrationPlan;
 use counts::CountsPlan;
 use crosstalk::CrosstalkPlan;
@@ -53,7 +53,6 @@ use resources::Resources;
 use schedule::Schedule;
 use standard_error::StandardErrorPlan;
 use streams::Streams;
-use timing::Timeline;
 use vector_formats::Formats;
 pub use words::SUMMARY_WORDS;
 

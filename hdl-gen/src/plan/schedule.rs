@@ -17,7 +17,7 @@ use super::dealing::{Dealer, Dealt, Stream};
 pub use super::lane::{LaneProgram, MAX_SEGMENT, RESULT_PLACES, Segment, SegmentKind, Visit};
 use super::matrix::{Entry, QuantisedMatrix};
 use super::product::{Epilogue, Product, Vector, mirror, spacing, visit_to_operand};
-use crate::blocks::latency::{TURN_GAP, collector_jump};
+use crate::timing::latency::{TURN_GAP, collector_jump};
 
 /// When a product runs, in cycles from the first issue of its program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -5,8 +5,8 @@ use golden::estimators::{BORDER, ERROR_FRACTION, error_log};
 use serde::Serialize;
 
 use super::format::{largest, pow2};
-use crate::blocks::parameters::Parameters;
 use crate::estimators::Contact;
+use crate::parameters::Parameters;
 
 /// Fraction bits of an error over `|F_z|`.
 pub const SHARE_FRACTION: u32 = 16;
@@ -53,9 +53,9 @@ impl StandardErrorPlan {
     pub fn parameters(&self, parameters: Parameters) -> Parameters {
         parameters
             .flag("WITH_ERROR", true)
-            .expression("ERROR_MODEL", format!("{SHARE_BITS}'d{}", self.model))
-            .expression("ERROR_NOISE", format!("{WEIGHT_BITS}'d{}", self.noise))
-            .expression("ERROR_BORDER", format!("{WEIGHT_BITS}'d{}", self.border))
+            .unsigned("ERROR_MODEL", SHARE_BITS, self.model as u64)
+            .unsigned("ERROR_NOISE", WEIGHT_BITS, self.noise as u64)
+            .unsigned("ERROR_BORDER", WEIGHT_BITS, self.border as u64)
     }
 
     /// The logarithm of base 2 of the error over `|F_z|`, [`ERROR_FRACTION`] fraction bits.

@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use golden::parity::CLASSES;
-use hdl_gen::blocks::latency::ISSUE_TO_RESULT;
 use hdl_gen::plan::matrix::{Entry, QuantisedMatrix, product as product_of};
 use hdl_gen::plan::product::{Epilogue, Product, Vector, mirror, visit_to_operand};
 use hdl_gen::plan::schedule::{LaneProgram, Program, RESULT_PLACES, Schedule, SegmentKind, Visit};
+use hdl_gen::timing::latency::ISSUE_TO_RESULT;
 
 /// The sums of one row, a way each.
 pub type Sums = [i64; CLASSES];

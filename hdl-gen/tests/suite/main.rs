@@ -13,6 +13,7 @@ mod model;
 mod need;
 mod reduced;
 mod roms;
+mod rooms;
 mod savings;
 mod scale;
 mod schedule;

@@ -4,7 +4,7 @@ use golden::design::Design;
 use hdl_gen::emit::{FileMap, emit};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::matrix::QuantisedMatrix;
-use hdl_gen::plan::timing::Timeline;
+use hdl_gen::timing::Timeline;
 
 use crate::support::design_text;
 

@@ -1,11 +1,11 @@
 //! The schedule: who computes what, and when.
 
 use golden::parity::CLASSES;
-use hdl_gen::blocks::latency::{ISSUE_TO_RESULT, collector_jump};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::matrix::{Entry, QuantisedMatrix};
 use hdl_gen::plan::product::{Block, Coefficients, Epilogue, Product, SUM_ROWS, Step, Vector, visit_to_operand};
 use hdl_gen::plan::schedule::{LaneProgram, Schedule, SegmentKind, Visit};
+use hdl_gen::timing::latency::{ISSUE_TO_RESULT, collector_jump};
 use proptest::prelude::*;
 
 use crate::lanes::{RowSums, Sums, execute};

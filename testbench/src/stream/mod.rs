@@ -7,8 +7,8 @@ mod pattern;
 use std::ops::Range;
 
 use golden::design::MAX_SIDE;
-use hdl_gen::plan::timing;
 use hdl_gen::plan::words::SUMMARY_WORDS;
+use hdl_gen::timing;
 use thiserror::Error;
 
 pub use check::{Checker, Violation};

@@ -15,13 +15,14 @@ use golden::sensor::Sensor;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{Cells, Found, Given, Metadata, Seen, Slot, Stage, WEIGHT_BITS};
-use crate::blocks::FEWEST_ELEMENTS;
-use crate::blocks::parameters::Parameters;
+use super::{Cells, Found, Given, Metadata, Seen, Slot, WEIGHT_BITS};
 use crate::cores::{LONG_BITS, SHORT_BITS};
+use crate::parameters::Parameters;
 use crate::plan::format::{FRICTION_FRACTION, Factors, pow2};
 use crate::plan::memory::memory;
+use crate::plan::product::FEWEST_ELEMENTS;
 use crate::plan::resources::BlockCost;
+use crate::timing::durations::Stage;
 pub use network::{INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS};
 pub use search::SearchPlan;
 
@@ -148,8 +149,8 @@ impl Slot for JointPlan {
             .count("TAXELS", self.search.taxels)
             .number("FRACTION", search::FRACTION.into())
             .number("U_LEFT", self.search.u_left.into())
-            .wide("LINEAR", LONG_BITS, self.linear)
-            .wide("CUBIC", SHORT_BITS, self.cubic)
+            .signed("LINEAR", LONG_BITS, self.linear)
+            .signed("CUBIC", SHORT_BITS, self.cubic)
             .flag("NETWORK", self.network.is_some())
             .cycles("EXPECTED_VALUES_LATENCY", self.search.first_row(&design.sensor))
             .cycles("EXPECTED_LEVEL_LATENCY", self.search.level(&design.sensor))
@@ -168,8 +169,8 @@ impl Slot for JointPlan {
             .number("STRESS_LEFT", network.stress_left.into())
             .number("UNIT_SHIFT", network.unit_shift.into())
             .number("CORRECTION_SHIFT", network.correction_shift.into())
-            .expression("ROM_DIR", "ROM_DIR")
-            .expression("ROM_NAME", format!("\"{}\"", design.name))
+            .outer("ROM_DIR")
+            .text("ROM_NAME", &design.name)
             .cycles("EXPECTED_LOOK_LATENCY", timing::look(&design.sensor))
             .cycles("EXPECTED_NETWORK_LATENCY", timing::network(network))
     }

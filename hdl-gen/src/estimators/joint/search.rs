@@ -6,9 +6,9 @@ use golden::parity::{CLASSES, Quads};
 use golden::sensor::Sensor;
 use serde::Serialize;
 
-use crate::blocks::latency;
 use crate::estimators::Contact;
 use crate::plan::format::{MANY_LANES, largest, round_shift};
+use crate::timing::latency;
 
 /// The grid.
 pub const GRID: Grid = Grid::SEARCH;

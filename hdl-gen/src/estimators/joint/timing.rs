@@ -3,8 +3,8 @@
 use golden::parity::Quads;
 use golden::sensor::Sensor;
 
-use super::super::Stage;
 use super::{JointPlan, NetworkPlan};
+use crate::timing::durations::Stage;
 
 /// From the last stress of a frame to its sum and maximum.
 pub const CONTACT_LATENCY: u64 = 4;

@@ -10,10 +10,11 @@ use golden::design::Design;
 use golden::sensor::Sensor;
 use serde_json::json;
 
-use super::{Cells, Found, Given, Metadata, Seen, Slot, Stage};
-use crate::blocks::parameters::Parameters;
+use super::{Cells, Found, Given, Metadata, Seen, Slot};
+use crate::parameters::Parameters;
 use crate::plan::format::{FRICTION_FRACTION, Factors, MOST_CELLS};
 use crate::plan::resources::BlockCost;
+use crate::timing::durations::Stage;
 
 /// Fraction bits of a centroid, in units of the taxel index.
 pub const CENTROID_FRACTION: u32 = 20;

@@ -1,39 +1,18 @@
 //! What a bank says of the curve from counts to pascals: its segments, in as many places as there is room.
 
-use golden::design::{Curve, Design, Samples};
+use golden::design::Curve;
 use serde::Serialize;
 
 use crate::plan::PlanError;
-use crate::plan::curve::{COUNT_BITS, CurvePlan, MOST_SHIFT, Segment};
-use crate::plan::format::{Format, largest, round_shift};
+use crate::plan::curve::{CurvePlan, MOST_SHIFT, Segment};
+use crate::plan::curve_format::{COUNT_BITS, CurveFormat, MOST_VALUE, SEGMENT_WORDS};
+use crate::plan::format::{largest, pow2, round_shift};
 use crate::plan::gain::GAIN_BITS;
 
-/// Room for so many segments, at least.
-const LEAST_ROOM: usize = 16;
-/// A curve's values have room for so many full scales.
-const VALUE_SCALES: f64 = 8.0;
-/// Where the design's curve ends, and counts are floats, another one may end so much later.
-const COUNT_SCALES: f64 = 2.0;
 /// Largest magnitude of a number, and of a count's conversion.
 pub const MOST_NUMBER: i64 = largest(COUNT_BITS);
-/// Largest magnitude of a value: the end of a segment may be beyond the next one's by what [`SLOPE_SHARE`] leaves.
-pub const MOST_VALUE: i64 = largest(crate::cores::LONG_BITS) - (1 << 12);
 /// A slope leads to the next segment's value within the way's 2^-16 and a step.
 const SLOPE_SHARE: u32 = 16;
-/// Words of a segment, and behind all of them.
-const SEGMENT_WORDS: usize = 4;
-const END_WORDS: usize = 3;
-
-/// The numbers of a design's curves: what every curve in a bank has in common.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct CurveFormat {
-    /// Segments for which a bank has room, a power of two.
-    pub room: usize,
-    /// `number = round(count * 2^exponent)`.
-    pub exponent: i32,
-    /// A step of the values is `2^lsb` Pa.
-    pub lsb: i32,
-}
 
 /// A curve as a bank holds it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -46,53 +25,26 @@ pub struct CurveMap {
     pub end: i64,
 }
 
-impl CurveFormat {
-    /// That of a design with this curve.
-    pub fn new(design: &Design, curve: &Curve) -> Self {
-        let counts = match design.hardware.samples {
-            Samples::Float32 => COUNT_SCALES * curve.largest_count(),
-            Samples::Int16 => curve.largest_count().max(-f64::from(i16::MIN)),
-            Samples::Uint16 => curve.largest_count().max(f64::from(u16::MAX)),
-        };
-        let values = VALUE_SCALES * design.hardware.full_scale_pa * largest(crate::cores::LONG_BITS) as f64;
-        Self {
-            room: (curve.points.len() - 1).next_power_of_two().max(LEAST_ROOM),
-            exponent: -Format::covering(counts, COUNT_BITS).lsb,
-            lsb: Format::covering(values / MOST_VALUE as f64, crate::cores::LONG_BITS).lsb,
-        }
-    }
-
-    /// Comparisons that find a segment, one after the other.
-    pub fn levels(&self) -> u32 {
-        self.room.trailing_zeros()
-    }
-
-    /// Words of a bank that a curve takes.
-    pub fn length(&self) -> usize {
-        SEGMENT_WORDS * self.room + END_WORDS
-    }
-
-    /// A curve as a bank holds it.
+impl CurveMap {
+    /// A curve in numbers of a format.
     ///
     /// # Errors
     /// [`PlanError::Curve`] where it rises too steeply, [`PlanError::CurveReach`] where its numbers have no room.
-    pub fn map(self, curve: &Curve) -> Result<CurveMap, PlanError> {
-        let plan = CurvePlan::in_steps(curve, -self.exponent, self.lsb)?;
+    pub fn new(format: CurveFormat, curve: &Curve) -> Result<Self, PlanError> {
+        let plan = CurvePlan::in_steps(curve, -format.exponent, format.lsb)?;
         let end = curve.points.last().map_or(0.0, |point| point[1]);
-        let end = (end * crate::plan::format::pow2(-self.lsb)).round() as i64;
-        let map = CurveMap { format: self, curve: plan, end };
+        let end = (end * pow2(-format.lsb)).round() as i64;
+        let map = Self { format, curve: plan, end };
         if map.fits() {
             return Ok(map);
         }
         Err(PlanError::CurveReach {
-            pascals: MOST_VALUE as f64 * crate::plan::format::pow2(self.lsb),
-            counts: MOST_NUMBER as f64 * crate::plan::format::pow2(-self.exponent),
-            segments: self.room,
+            pascals: MOST_VALUE as f64 * pow2(format.lsb),
+            counts: MOST_NUMBER as f64 * pow2(-format.exponent),
+            segments: format.room,
         })
     }
-}
 
-impl CurveMap {
     /// The words of a place: number, value, slope and shift; of one behind the last segment's what a bank takes.
     pub fn segment(&self, place: usize) -> [u32; SEGMENT_WORDS] {
         let Segment { first, value, slope, shift } =
@@ -154,7 +106,7 @@ mod tests {
     #[test]
     fn values_are_those_of_the_curve() {
         let (curve, format) = format();
-        let map = format.map(&curve).unwrap();
+        let map = CurveMap::new(format, &curve).unwrap();
         assert_eq!((format.room, map.words().len()), (64, 259));
         for step in 1..400 {
             let count = f64::from(step) * curve.largest_count() / 400.5;
@@ -173,7 +125,7 @@ mod tests {
     #[test]
     fn what_does_not_go_together_is_refused() {
         let (curve, format) = format();
-        let right = format.map(&curve).unwrap();
+        let right = CurveMap::new(format, &curve).unwrap();
         let cases: [(&str, Change); 9] = [
             ("numbers that do not ascend", |map| map.curve.segments[9].first = map.curve.segments[8].first),
             ("a value of another way", |map| map.curve.segments[40].value /= 2),

@@ -6,7 +6,7 @@ use golden::design::{Design, MAX_LANES};
 use hdl_gen::estimators::Cells;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::product::{Coefficients, Epilogue};
-use hdl_gen::plan::timing::Timeline;
+use hdl_gen::timing::Timeline;
 
 use crate::support::{design_text, plan, small_reduced};
 

@@ -10,9 +10,9 @@ use std::collections::BTreeMap;
 use golden::design::{Design, Estimator, Outputs, PlanKind, Sensor};
 use golden::matrices::{Matrices, MatrixName};
 use golden::solver::{Solver, Status};
-use hdl_gen::blocks;
 use hdl_gen::model::{BAD_LENGTH, NO_CONTACT, NOT_FINITE, SEVERAL_CONTACTS};
 use hdl_gen::plan::{Plan, words};
+use hdl_gen::timing::latency;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use testbench::stream::{Mode, Pattern, Traffic, exchange};
@@ -135,7 +135,7 @@ fn counting_is_over_before_the_search() {
             sensors.extend(grids.map(|(columns, rows)| Sensor { columns, rows, ..own.clone() }));
         }
         for sensor in sensors {
-            let (count, search) = (blocks::latency::count_contacts(&sensor), slot.stages(&sensor)[0].cycles);
+            let (count, search) = (latency::count_contacts(&sensor), slot.stages(&sensor)[0].cycles);
             assert!(count < search, "{}, {sensor}: {count} cycles to count, {search} to search", design.name);
         }
     }

@@ -9,7 +9,7 @@ use golden::bank;
 use golden::dead_taxels::DeadTaxels;
 use golden::design::{Calibration, Curve};
 use hdl_gen::plan::Plan;
-use hdl_gen::plan::calibration::{Bank, DeadMap};
+use hdl_gen::plan::calibration::{Bank, CurveMap, DeadMap};
 use hdl_gen::plan::dead::DeadPlan;
 use rand::seq::index::sample;
 use rand::{Rng, SeedableRng};
@@ -79,7 +79,7 @@ pub(super) fn banks(plan: &Plan) -> Vec<Given> {
                     points.push(at);
                 }
                 let curve = Curve { points, law: None };
-                thresholds.curve = Some(of.curve().expect("in RAM").map(&curve).expect("within bounds"));
+                thresholds.curve = Some(CurveMap::new(of.curve().expect("in RAM"), &curve).expect("within bounds"));
                 curve
             });
             let noise = if index.is_multiple_of(2) { 0.0 } else { random.random_range(1e-3..900.0) };

@@ -1,22 +1,17 @@
 //! Predicted cycles: the hardware's control, register by register, without the data.
 //!
 //! When a program starts depends on the frames under way, so latency and interval come from playing frames through
-//! what decides it. Counts of pipeline registers stand with the blocks; tests compare with simulation.
-
-mod durations;
+//! what decides it. Tests compare them with simulation.
 
 use std::collections::{BTreeSet, VecDeque};
 
-use self::durations::Durations;
-use super::Plan;
-use super::places::FIELD_PLACES;
-use super::timing::{INTERVAL_FRAMES, Timeline, mean_interval};
-use crate::blocks::bz::Arrival;
-use crate::blocks::ingress_fifo;
-use crate::blocks::latency::{
+use super::durations::{Arrival, Durations};
+use super::latency::{
     self, OUTPUT_LATENCY, OUTPUT_SKID, OUTPUT_TO_IDLE, OUTPUT_TO_RELEASE, SEARCH_TO_FRICTION, SEQUENCER_TO_LANES,
     SUMMARY_LATENCY, TAXELS_TO_CELLS, TAXELS_TO_FIELD, VISIT_TO_RESIDUAL,
 };
+use super::places::{FIELD_PLACES, INGRESS_FRAMES};
+use super::timeline::{INTERVAL_FRAMES, Timeline, mean_interval};
 
 /// Frames whose stress, whose search, and whose field have a place.
 const PLACES: u64 = FIELD_PLACES as u64;
@@ -25,15 +20,14 @@ const FOREVER: u64 = 100_000_000;
 /// Frames within which a core that keeps up with its source repeats itself.
 const SPACED_FRAMES: u64 = 96;
 
-/// Predicts latency and interval; of the plan everything else is there.
-pub(super) fn timeline(plan: &Plan) -> Timeline {
-    let durations = Durations::new(plan);
-    let ends = |frames| Control::new(&durations).play(frames);
+/// Predicts latency and interval of a design whose lanes issue for so many cycles a frame.
+pub fn timeline(durations: &Durations, spmv_cycles: u64) -> Timeline {
+    let ends = |frames| Control::new(durations).play(frames);
     let interval = mean_interval(&ends(INTERVAL_FRAMES));
     Timeline {
         latency_cycles: ends(1)[0],
-        interval_cycles: if plan.streams().drops { smallest_spacing(&durations, interval) } else { interval },
-        spmv_cycles: plan.schedule.issue_cycles(),
+        interval_cycles: if durations.drops { smallest_spacing(durations, interval) } else { interval },
+        spmv_cycles,
         search_cycles: durations.stages.iter().map(|stage| stage.cycles).sum(),
     }
 }
@@ -195,7 +189,7 @@ impl<'a> Control<'a> {
     fn keep_pace(mut self, spacing: u64) -> Pace {
         let mut states = BTreeSet::new();
         for _ in 0..SPACED_FRAMES {
-            if self.in_fifo == ingress_fifo::FRAMES {
+            if self.in_fifo == INGRESS_FRAMES {
                 return Pace::Loses;
             }
             self.in_fifo += 1;
@@ -386,9 +380,9 @@ impl<'a> Control<'a> {
 
     /// Starts a program, one cycle after the decision; returns the cycle of its last visit.
     fn start(&mut self, index: usize) -> u64 {
-        let program = self.of.programs[index];
+        let program = &self.of.programs[index];
         let first_issue = self.first_issue(index);
-        self.writes.extend(self.of.writes[index].iter().map(|cycle| first_issue + cycle));
+        self.writes.extend(program.writes.iter().map(|cycle| first_issue + cycle));
         self.lanes_free = first_issue + program.length - 1 - SEQUENCER_TO_LANES;
         first_issue + program.last_visit
     }

@@ -1,4 +1,4 @@
-//! The predicted times of a design, exact: each is compared with simulation. `plan::control` finds them.
+//! The predicted times of a design, exact: each is compared with simulation. [`super::control`] finds them.
 
 use serde::Serialize;
 

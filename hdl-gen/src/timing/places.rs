@@ -1,5 +1,7 @@
 //! Frames that have a place in the hardware at once.
 
+/// Frames that wait in the ingress FIFO.
+pub const INGRESS_FRAMES: usize = 2;
 /// Frames whose weights are kept for the output where the lanes put the field together.
 pub const WEIGHT_PLACES: usize = 4;
 /// Frames whose field has a place.

@@ -1,0 +1,51 @@
+//! The rooms of the generator: who may import whom, and where Verilog is printed.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Rooms in the order of imports; those of one line import each other's files.
+const FLOORS: [&[&str]; 5] =
+    [&["cores", "parameters"], &["timing"], &["plan", "estimators", "blocks"], &["model"], &["emit"]];
+
+fn files(place: &Path) -> Vec<PathBuf> {
+    if place.is_file() {
+        return vec![place.to_owned()];
+    }
+    let entries = fs::read_dir(place).unwrap().map(|entry| entry.unwrap().path());
+    entries.flat_map(|path| files(&path)).collect()
+}
+
+/// The code of each file of a room, but for tests.
+fn texts(room: &str) -> Vec<(PathBuf, String)> {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let place = [source.join(room), source.join(format!("{room}.rs"))].into_iter().find(|place| place.exists());
+    let code = |path: PathBuf| {
+        let text = fs::read_to_string(&path).unwrap();
+        let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default().to_owned();
+        (path, code)
+    };
+    files(&place.unwrap()).into_iter().map(code).collect()
+}
+
+#[test]
+fn imports_point_one_way() {
+    for (floor, rooms) in FLOORS.iter().enumerate() {
+        let above = FLOORS[floor + 1..].iter().copied().flatten();
+        for other in above {
+            let import = format!("crate::{other}");
+            for (path, text) in rooms.iter().flat_map(|room| texts(room)) {
+                assert!(!text.contains(&import), "{}: imports {other}, which stands above", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn only_the_emitter_prints_verilog() {
+    for room in FLOORS[..4].iter().copied().flatten() {
+        for (path, text) in texts(room) {
+            let literal = ["'d{", "'sd{", "'h{", "'b{", "'{base}"].into_iter().find(|literal| text.contains(literal));
+            assert_eq!(literal, None, "{}: a Verilog literal", path.display());
+        }
+    }
+}
