@@ -28,7 +28,8 @@ const LEAST: Duration = Duration::from_millis(100);
 /// Measures how many frames a second the solver in double precision takes.
 ///
 /// One frame after the other, as they come from a sensor, and in batches, as from a file; on one core. The frames are
-/// pushed contacts at random places, the same in every run. Each figure is the median of several repetitions.
+/// pushed contacts at random places, the same in every run: as many a frame as the design separates, two at most. Each
+/// figure is the median of several repetitions.
 #[derive(clap::Args)]
 pub struct Args {
     /// Design files (TOML).
@@ -144,21 +145,28 @@ fn speed(frames: usize, mut solve: impl FnMut() -> Result<(), SolverError>) -> R
     })
 }
 
-/// Frames of pushed contacts on about a tenth of the sensor, at half the full scale.
+/// Frames of pushed contacts on about a tenth of the sensor, at half the full scale; of two where the design separates them.
 fn contacts(design: &Design, solver: &Solver) -> Vec<Vec<f64>> {
     let sensor = &design.sensor;
     let matrices = solver.matrices();
+    let several = design.algorithm.contacts > 1;
+    // Of two each has a half along x, and half the width.
+    let (places, width) = if several { (&[0.1..0.2, 0.75..0.85][..], 0.1) } else { (&[0.3..0.7][..], 0.2) };
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut frame = || {
-        let [x, y] = [sensor.columns, sensor.rows].map(|side| side as f64 * random.random_range(0.3..0.7));
-        let [a, b] = [sensor.columns, sensor.rows].map(|side| 0.2 * side as f64 + 0.5);
-        let press = DVector::from_fn(sensor.taxels(), |taxel, _| {
-            let [column, row] = [taxel % sensor.columns, taxel / sensor.columns].map(|place| place as f64);
-            (1.0 - ((column - x) / a).powi(2) - ((row - y) / b).powi(2)).max(0.0).sqrt()
-        });
-        let (sine, cosine) = random.random_range(0.0..std::f64::consts::TAU).sin_cos();
-        let pushed = &matrices.c31 * &press * (0.5 * cosine) + &matrices.c32 * &press * (0.5 * sine);
-        let stress = pushed - &matrices.c33 * &press;
+        let mut stress = DVector::zeros(sensor.taxels());
+        for place in places {
+            let x = sensor.columns as f64 * random.random_range(place.clone());
+            let y = sensor.rows as f64 * random.random_range(0.3..0.7);
+            let [a, b] = [sensor.columns, sensor.rows].map(|side| width * side as f64 + 0.5);
+            let press = DVector::from_fn(sensor.taxels(), |taxel, _| {
+                let [column, row] = [taxel % sensor.columns, taxel / sensor.columns].map(|place| place as f64);
+                (1.0 - ((column - x) / a).powi(2) - ((row - y) / b).powi(2)).max(0.0).sqrt()
+            });
+            let (sine, cosine) = random.random_range(0.0..std::f64::consts::TAU).sin_cos();
+            stress += &matrices.c31 * &press * (0.5 * cosine) + &matrices.c32 * &press * (0.5 * sine);
+            stress -= &matrices.c33 * &press;
+        }
         let scale = 0.5 * design.hardware.full_scale_pa / stress.amax();
         stress.iter().enumerate().map(|(taxel, stress)| design.input.from_pa(taxel, scale * stress)).collect()
     };
