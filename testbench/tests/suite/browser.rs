@@ -101,14 +101,14 @@ fn the_report_fits_a_desk_and_a_telephone() {
     let page = report(folder.path());
     // What it concludes, and from what it does not: two bodies that are pushed against each other.
     for (part, times) in [
-        ("Take no filter", 2),
+        ("recommended: no filter", 2),
         ("tells nothing of either", 1),
         ("[hardware]\nlanes = ", 2),
         // What is held, one body, tells of sensor 2, and what errs least there is not what is least bad under a punch.
-        ("Take no filter, reduced plan, joint, 128 units, general", 1),
+        ("recommended: no filter, reduced plan, joint, 128 units, general", 1),
         // Of one frame of each kind the hardest decides: on sensor 1 the line search's error is the least there.
-        ("Take no filter, reduced plan, line, 8 lanes", 1),
-        ("On scenes sensor2-held, sensor2-punch and kinds", 1),
+        ("recommended: no filter, reduced plan, line, 8 lanes", 1),
+        ("averaged over: sensor2-held, sensor2-punch, kinds", 1),
         ("The same on contacts of all kinds", 2),
         // The field that is shown is that of the recommended design.
         ("the hardware of sensor2_wide, grid search, finds", 1),

@@ -1,9 +1,9 @@
-//! What the points of a sensor come to: a design to take, and three sentences that say why.
+//! What the points of a sensor come to: a design to take, beside the others that one would ask for.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 use golden::design::PlanKind;
+use golden::table::{Cell, Table};
 use serde::Serialize;
 
 use super::paper::TABLE_3;
@@ -15,10 +15,16 @@ const AS_GOOD: f64 = 0.5;
 /// A variant that errs by more times the least error is none to take for its speed.
 const WORTH: f64 = 2.0;
 
+/// Above the columns of the choices.
+const HEADER: [&str; 8] = ["", "x, y %", "z %", "hardest scene %", "µs", "DSP", "RAMB36", "frames/s"];
+
 /// The head of a sensor's part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Conclusion {
-    sentences: Vec<String>,
+    /// On what the variants were judged.
+    judged: String,
+    /// The choices.
+    table: Table,
     /// The recommended variant as keys of a design file.
     keys: String,
 }
@@ -43,10 +49,24 @@ impl Variant<'_> {
         self.mean(|&(_, tangential, normal)| tangential.max(normal))
     }
 
-    /// The scene with the largest error, and that error.
-    fn worst(&self) -> (&str, f64) {
-        let each = self.errors.iter().map(|&(scene, tangential, normal)| (scene, tangential.max(normal)));
-        each.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default()
+    /// The error on the hardest scene.
+    fn worst(&self) -> f64 {
+        self.errors.iter().map(|&(_, tangential, normal)| tangential.max(normal)).fold(0.0, f64::max)
+    }
+
+    /// Its row of the table.
+    fn row(&self, role: &str) -> Vec<String> {
+        let Hardware { latency_us, interval_us, dsp, bram36, .. } = *self.hardware;
+        vec![
+            format!("{role}: {}", self.point.label()),
+            format!("{:.1}", self.mean(|error| error.1)),
+            format!("{:.1}", self.mean(|error| error.2)),
+            format!("{:.1}", self.worst()),
+            format!("{latency_us:.1}"),
+            dsp.to_string(),
+            format!("{bram36:.1}"),
+            grouped((1e6 / interval_us).round() as u64),
+        ]
     }
 
     /// Cycles times multipliers: what a variant asks of a device for a frame. Of those that ask as much, that with fewer
@@ -67,74 +87,33 @@ pub fn conclusion(points: &[&Point], scenes: &[&str]) -> Option<Conclusion> {
     let variants = variants(points, scenes);
     let best = best(&variants)?;
     let quickest = |variant: &&Variant| (variant.hardware.latency_cycles, variant.cost());
-    let fastest_of_all = variants.iter().min_by_key(quickest)?;
     let exact = variants.iter().filter(|variant| variant.error() <= WORTH * best.error());
-    let fastest = exact.min_by_key(quickest)?;
+    let filtered = variants.iter().filter(|variant| variant.is_filtered());
+    let roles = [
+        ("recommended", Some(best)),
+        ("fastest with at most twice its error", exact.min_by_key(quickest)),
+        ("fastest", variants.iter().min_by_key(quickest)),
+        ("most exact with a filter", filtered.min_by(|a, b| a.error().total_cmp(&b.error()))),
+    ];
+    let mut table = Table::new(HEADER);
+    let mut shown: Vec<&str> = Vec::new();
+    for (role, variant) in roles {
+        let Some(variant) = variant.filter(|variant| !shown.contains(&variant.point.key.as_str())) else { continue };
+        shown.push(&variant.point.key);
+        table.row(variant.row(role));
+    }
+    if let Some(published) = published(best.point) {
+        table.row(published);
+    }
     let is_best = |point: &&&Point| point.label() == best.point.label() && scenes.contains(&point.scene.as_str());
     let frames: usize = points.iter().filter(is_best).map(|point| point.frames).sum();
-    let (worst, at_worst) = best.worst();
-    let mut sentences = vec![format!(
-        "Take {}: of {} variants none errs by half a point less, and of those that err as little it has the least product \
-         of cycles and multipliers. On {} ({frames} frames in all) its largest error{} is {:.1} % of the normal force \
-         along x and y and {:.1} % along z{}. It takes {} cycles, {:.1} µs, with {} DSP and {:.1} RAMB36; {} frames a \
-         second.",
-        best.point.label(),
-        variants.len(),
-        listed(scenes),
-        if scenes.len() > 1 { ", averaged over the scenes," } else { "" },
-        best.mean(|error| error.1),
-        best.mean(|error| error.2),
-        if scenes.len() > 1 { format!("; on {worst}, the hardest, {at_worst:.1} %") } else { String::new() },
-        grouped(best.hardware.latency_cycles),
-        best.hardware.latency_us,
-        best.hardware.dsp,
-        best.hardware.bram36,
-        grouped((1e6 / best.hardware.interval_us).round() as u64),
-    )];
-    sentences.extend(beside_the_paper(best));
-    let mut last = format!(
-        "Fastest of those that err by at most twice as much is {}, {:.1} µs on {} DSP, with errors of {:.1} %",
-        fastest.point.label(),
-        fastest.hardware.latency_us,
-        fastest.hardware.dsp,
-        fastest.error()
+    let judged = format!(
+        "Errors in percent of the normal force, the largest on each scene, averaged over: {} ({frames} frames). Recommended \
+         is the least product of cycles and multipliers among those within half a point of the least error, of {} variants.",
+        scenes.join(", "),
+        variants.len()
     );
-    if fastest.point.key == best.point.key {
-        "None that errs by at most twice as much is faster".clone_into(&mut last);
-    }
-    if fastest_of_all.point.key != fastest.point.key {
-        // Writing to a String cannot fail.
-        let _ = write!(
-            last,
-            "; fastest of all is {}, {:.1} µs with {:.1} %",
-            fastest_of_all.point.label(),
-            fastest_of_all.hardware.latency_us,
-            fastest_of_all.error()
-        );
-    }
-    let filtered = variants.iter().filter(|variant| variant.is_filtered() && variant.point.key != best.point.key);
-    if let Some(filtered) = filtered.min_by(|a, b| a.error().total_cmp(&b.error())) {
-        let verdict = match filtered.error() - best.error() {
-            more if more > AS_GOOD => "which is less exact",
-            less if less < -AS_GOOD => "which is more exact",
-            _ => "which is as exact",
-        };
-        let time = match filtered.hardware.latency_us / best.hardware.latency_us {
-            less if less < 0.95 => format!("{:.0} % of the time", 100.0 * less),
-            more if more > 1.05 => format!("{more:.1} times as long"),
-            _ => "as long".to_owned(),
-        };
-        // Writing to a String cannot fail.
-        let _ = write!(
-            last,
-            "; of the filtered ones the most exact is {}, with {:.1} % in {:.1} µs, {verdict} and takes {time}",
-            filtered.point.label(),
-            filtered.error(),
-            filtered.hardware.latency_us,
-        );
-    }
-    sentences.push(last + ".");
-    Some(Conclusion { sentences, keys: keys(best.point) })
+    Some(Conclusion { judged, table, keys: keys(best.point) })
 }
 
 /// The point of the variant that is recommended, as [`conclusion`] names it.
@@ -172,26 +151,14 @@ fn variants<'a>(points: &[&'a Point], scenes: &[&str]) -> Vec<Variant<'a>> {
         .collect()
 }
 
-/// The paper's hardware without a filter, if the sensor is one of its two.
-fn beside_the_paper(best: &Variant<'_>) -> Option<String> {
-    let number = paper_sensor(&best.point.sensor)?;
+/// The row of the paper's hardware without a filter, if the sensor is one of its two; by finite elements, on its own contact.
+fn published(point: &Point) -> Option<Vec<Cell>> {
+    let number = paper_sensor(&point.sensor)?;
     let row = TABLE_3.iter().find(|row| (row.sensor, row.filter, row.software) == (number, "none", false))?;
-    Some(format!(
-        "The published hardware without a filter errs by {:.1} and {:.1} % on a contact of its own, against finite elements, \
-         and takes {:.2} ms: {} times as long.",
-        row.max[0].max(row.max[1]),
-        row.max[2],
-        row.milliseconds,
-        grouped((1000.0 * row.milliseconds / best.hardware.latency_us).round() as u64)
-    ))
-}
-
-fn listed(names: &[&str]) -> String {
-    match names {
-        [one] => format!("scene {one}"),
-        [rest @ .., last] => format!("scenes {} and {last}", rest.join(", ")),
-        [] => String::new(),
-    }
+    let [x, y, z, ..] = row.max;
+    let cells = ["published, no filter, on its own contact".to_owned(), format!("{:.1}", x.max(y)), format!("{z:.1}")];
+    let time = grouped((1000.0 * row.milliseconds).round() as u64);
+    Some(cells.into_iter().chain([String::new(), time]).map(|text| Cell::new(text, "paper")).collect())
 }
 
 fn keys(point: &Point) -> String {
@@ -266,6 +233,12 @@ pub(super) mod tests {
         }
     }
 
+    /// The first five columns.
+    fn rows(found: &Conclusion) -> Vec<[String; 5]> {
+        let row = |row: &Vec<Cell>| [0, 1, 2, 3, 4].map(|column| row[column].text.clone());
+        found.table.rows.iter().map(row).collect()
+    }
+
     #[test]
     fn the_cheapest_of_the_most_exact_is_taken() {
         let points = [
@@ -283,19 +256,29 @@ pub(super) mod tests {
         ];
         let points: Vec<&Point> = points.iter().collect();
         let found = conclusion(&points, &["a", "b"]).unwrap();
-        let [take, paper, others] = found.sentences.as_slice() else { panic!("{found:?}") };
-        assert!(take.starts_with("Take no filter, reduced plan, line, 16 lanes"), "{take}");
-        assert!(take.contains("of 4 variants") && take.contains("averaged over the scenes, is 1.9 %"), "{take}");
-        assert!(take.contains("; on b, the hardest, 2.8 %") && take.contains("(2 frames in all)"), "{take}");
-        assert!(paper.contains("28.76 ms: 1,798 times"), "{paper}");
-        let fastest = "Fastest of those that err by at most twice as much is no filter, reduced plan, line, 64 lanes";
-        assert!(others.starts_with(fastest) && !others.contains("fastest of all"), "{others}");
+        let expected = [
+            ["recommended: no filter, reduced plan, line, 16 lanes, 18 × 27 bits", "1.9", "0.0", "2.8", "16.0"],
+            [
+                "fastest with at most twice its error: no filter, reduced plan, line, 64 lanes, 18 × 27 bits",
+                "1.6",
+                "0.0",
+                "2.1",
+                "8.0",
+            ],
+            ["published, no filter, on its own contact", "6.0", "11.9", "", "28,760"],
+        ];
+        assert_eq!(rows(&found), expected);
+        assert!(
+            found.judged.contains("over: a, b (2 frames)") && found.judged.ends_with("of 4 variants."),
+            "{}",
+            found.judged
+        );
         assert!(found.keys.contains("filter = { kind = \"none\" }") && found.keys.contains("lanes = 16"), "{found:?}");
         assert_eq!(conclusion(&points, &["a", "b", "c"]), None);
         assert_eq!(conclusion(&points, &[]), None);
     }
 
-    /// A filter that saves neither cycles nor multipliers is none to take, nor one to speak of.
+    /// A filter that saves neither cycles nor multipliers is none to take.
     #[test]
     fn of_equal_variants_that_with_fewer_memories_is_taken() {
         let plain = point("a", 16, 2000, 2.0);
@@ -304,22 +287,24 @@ pub(super) mod tests {
         "filtered".clone_into(&mut filtered.key);
         filtered.hardware.as_mut().expect("hardware").bram36 += 6.0;
         let found = conclusion(&[&filtered, &plain], &["a"]).expect("a conclusion");
-        assert!(found.sentences[0].starts_with("Take no filter"), "{:?}", found.sentences);
+        let [first, second, _] = rows(&found).try_into().expect("three rows");
+        assert!(first[0].starts_with("recommended: no filter"), "{first:?}");
+        assert!(second[0].starts_with("most exact with a filter: F2 p = 50"), "{second:?}");
         let alone = conclusion(&[&filtered], &["a"]).expect("a conclusion");
-        assert!(!alone.sentences.concat().contains("of the filtered ones"), "{:?}", alone.sentences);
+        assert_eq!(rows(&alone).len(), 2, "its row, and the published one");
     }
 
-    /// What is fast and wrong is half a sentence.
+    /// What is fast and wrong has a row of its own.
     #[test]
     fn the_fastest_is_one_to_take() {
         let points = [point("a", 16, 2000, 2.0), point("a", 64, 1000, 3.9), point("a", 32, 900, 4.1)];
-        let found = conclusion(&points.each_ref(), &["a"]).expect("a conclusion");
-        let last = found.sentences.last().expect("sentences");
-        assert!(last.contains("is no filter, reduced plan, line, 64 lanes, 18 × 27 bits, 8.0 µs"), "{last}");
-        assert!(last.contains("; fastest of all is no filter, reduced plan, line, 32 lanes"), "{last}");
-        let alone = conclusion(&[&points[0], &points[2]], &["a"]).expect("a conclusion");
-        let last = alone.sentences.last().expect("sentences");
-        assert!(last.starts_with("None that errs by at most twice as much is faster; fastest of all is"), "{last}");
+        let found = rows(&conclusion(&points.each_ref(), &["a"]).expect("a conclusion"));
+        let [_, exact, fastest, _] = found.try_into().expect("four rows");
+        assert!(
+            exact[0].starts_with("fastest with at most twice its error: ") && exact[0].contains("64 lanes"),
+            "{exact:?}"
+        );
+        assert!(fastest[0].starts_with("fastest: ") && fastest[0].contains("32 lanes"), "{fastest:?}");
     }
 
     #[test]
