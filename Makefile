@@ -179,8 +179,9 @@ bench: tools ## Measure solver, generator, simulation, cycles and cells, into re
 	@echo 'bench: generator, simulation, cycles (some minutes)'
 	@$(XTASK_RELEASE) bench $(BENCH_DESIGNS) --solver $(BENCH_FOLDER)/solver.json \
 	    $(foreach design,$(BENCH_CELLS),--cells $(TARGET)/synth/$(subst -,_,$(design)).cells.json) \
-	    --plot docs/figures/latency.svg --json > $(BENCH_FOLDER)/figures.json
+	    > $(BENCH_FOLDER)/figures.json
 	@python3 tools/results.py bench $(BENCH_FOLDER)/figures.json
+	@python3 tools/plots.py
 
 # One point a job; sweeps on more than one machine: `make sweep-cluster SNAKEMAKE_OPTIONS='--executor slurm --jobs 100'`.
 SWEEP_FOLDER  := $(TARGET)/sweep
@@ -201,8 +202,9 @@ report-full: tools build ## The same over every combination of filters, plans, w
 
 .PHONY: corner-cases
 corner-cases: tools ## Sensors, contacts and frames at the limits, all through the RTL (minutes): results/corner-cases.csv
-	@$(XTASK) corner-cases --plot docs/figures/depth.svg --json > $(TARGET)/corner-cases.json
+	@$(XTASK) corner-cases > $(TARGET)/corner-cases.json
 	@python3 tools/results.py corner-cases $(TARGET)/corner-cases.json
+	@python3 tools/plots.py
 
 .PHONY: sweep-tools
 sweep-tools: tools ## Install Snakemake into .venv, for sweeps on more than one machine

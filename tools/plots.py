@@ -302,11 +302,106 @@ def drift():
     return picture(left + 270 * 3, bottom + 54, "Error under creep and drift", parts)
 
 
+def depth():
+    """Largest errors over depth by pitch, logarithmic both ways."""
+    depths = ["0.3", "0.5", "0.75", "1", "1.5", "2", "3", "4"]
+    lines = [
+        ("line search", "line", "", 1, "7 4"),
+        ("line search, regularised", "line", ", regularised", 1, ""),
+        ("grid search, regularised", "grid", ", regularised", 3, ""),
+    ]
+    table = {(row["estimator"], row["case"]): row for row in rows("corner-cases.csv")}
+    left, top, bottom, width = 64, 84, 330, 380
+    ends = {"x": (0.25, 5.0), "y": (0.1, 100.0)}
+    parts = []
+    for number, (name, words) in enumerate((("tangential", "tangential force"), ("normal", "normal force"))):
+        x0 = left + number * (width + 70)
+
+        def x(value, x0=x0):
+            return x0 + width * math.log(float(value) / ends["x"][0]) / math.log(ends["x"][1] / ends["x"][0])
+
+        def y(error):
+            error = min(max(error, ends["y"][0]), ends["y"][1])
+            return bottom - (bottom - top) * math.log(error / ends["y"][0]) / math.log(ends["y"][1] / ends["y"][0])
+
+        parts.append(text(x0 - 40, 18, f"largest error of the {words}, %"))
+        for at in depths:
+            parts.append(line(x(at), top, x(at), bottom))
+            parts.append(text(x(at), bottom + 18, at, "middle", size=12))
+        for error in (0.1, 1, 10, 100):
+            parts.append(line(x0, y(error), x0 + width, y(error)))
+            parts.append(text(x0 - 8, y(error) + 4, f"{error:g}", "end", size=12))
+        parts.append(text(x0 + width / 2, bottom + 40, "depth / pitch", "middle", size=12))
+        for index, (title, estimator, more, colour, dash) in enumerate(lines):
+            found = [(at, table.get((estimator, f"h/s = {at}, noise 0.2 %{more}"), {}).get(f"{name}_f64")) for at in depths]
+            path = " ".join(f"{x(at):.1f},{y(float(error)):.1f}" for at, error in found if error)
+            dashes = f' stroke-dasharray="{dash}"' if dash else ""
+            stroke = f'fill="none" stroke="{COLOURS[colour]}" stroke-width="2"{dashes}'
+            parts.append(f'<polyline points="{path}" {stroke}/>')
+            parts.append(f'<polyline points="{x0},{32 + 16 * index} {x0 + 28},{32 + 16 * index}" {stroke}/>')
+            parts.append(text(x0 + 36, 36 + 16 * index, title, colour=COLOURS[colour], size=12))
+    return picture(left + 2 * (width + 70), bottom + 54, "Errors over depth by pitch", parts)
+
+
+def latency():
+    """Cycles against taxels, logarithmic both ways, beside the published design."""
+    lines = [
+        ("line, reduced, no filter", "16", "no filter, 16 lanes", 1, ""),
+        ("line, reduced, no filter", "32", "no filter, 32 lanes", 1, "7 4"),
+        ("line, reduced, F2 p = 1", "16", "F2 p = 1, 16 lanes", 2, ""),
+        ("line, reduced, F2 p = 1", "32", "F2 p = 1, 32 lanes", 2, "7 4"),
+    ]
+    published = next(float(row["latency_us"]) * 125 for row in rows("published.csv") if row["design"] == "sparse average")
+    left, right, top, bottom = 74, 590, 40, 440
+    ends = {"x": (14.0, 1100.0), "y": (500.0, 1e7)}
+
+    def x(taxels):
+        return left + (right - left) * math.log(taxels / ends["x"][0]) / math.log(ends["x"][1] / ends["x"][0])
+
+    def y(cycles):
+        return bottom - (bottom - top) * math.log(cycles / ends["y"][0]) / math.log(ends["y"][1] / ends["y"][0])
+
+    parts = [text(12, 22, "cycles from the first word in to the last word out; dotted: multiply-accumulates / lanes")]
+    for taxels in (16, 36, 64, 100, 144, 256, 576, 1024):
+        parts.append(line(x(taxels), top, x(taxels), bottom))
+        parts.append(text(x(taxels), bottom + 18, str(taxels), "middle", size=12))
+    for cycles in (1_000, 10_000, 100_000, 1_000_000, 10_000_000):
+        parts.append(line(left, y(cycles), right, y(cycles)))
+        parts.append(text(left - 8, y(cycles) + 4, f"{cycles:,}", "end", size=12))
+    parts.append(text((left + right) / 2, bottom + 42, "taxels", "middle"))
+    labels = []
+    for plan, lanes, title, colour, dash in lines:
+        points = [row for row in rows("cycles.csv") if row["plan"] == plan and row["lanes"] == lanes]
+        places = [(math.prod(int(side) for side in row["taxels"].split(" x ")), row) for row in points]
+        measured = [(x(taxels), y(float(row["latency"]))) for taxels, row in places]
+        # What the latency of a large sensor tends to, from where it is a large part of it.
+        work = [(x(taxels), int(row["macs"]) / int(lanes), float(row["latency"])) for taxels, row in places]
+        work = [(at, y(cycles)) for at, cycles, whole in work if cycles > 0.4 * whole]
+        for path, dashes in ((measured, dash), (work, "1 4")):
+            if len(path) > 1:
+                words = " ".join(f"{at:.1f},{height:.1f}" for at, height in path)
+                more = f' stroke-dasharray="{dashes}"' if dashes else ""
+                parts.append(f'<polyline points="{words}" fill="none" stroke="{COLOURS[colour]}" stroke-width="2"{more}/>')
+        for (at, height), (_, row) in zip(measured, places):
+            size = 4.5 if row["simulated"] else 2.5
+            parts.append(f'<circle cx="{at:.1f}" cy="{height:.1f}" r="{size}" fill="{COLOURS[colour]}"/>')
+        labels.append((measured[-1][1], title, COLOURS[colour]))
+    free = 0.0
+    for height, title, colour in sorted(labels):
+        free = max(height, free + 16)
+        parts.append(text(right + 10, free + 4, title, colour=colour, size=12))
+    parts.append(f'<rect x="{x(100) - 6:.1f}" y="{y(published) - 6:.1f}" width="12" height="12" fill="{COLOURS[0]}"/>')
+    parts.append(text(x(100) + 12, y(published) + 4, "published sparse designs, at 125 MHz", size=12))
+    return picture(760, bottom + 54, "Latency of a frame against the number of taxels", parts)
+
+
 PLOTS = {
     "contact-kinds.svg": contact_kinds,
+    "depth.svg": depth,
     "drift.svg": drift,
     "error-latency.svg": error_latency,
     "finite-elements.svg": finite_elements,
+    "latency.svg": latency,
     "noise.svg": noise,
     "several-contacts.svg": several_contacts,
     "smoothing.svg": smoothing,

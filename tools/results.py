@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Measured figures as CSV: results.py bench|corner-cases FIGURES.json [--out results]
 
-FIGURES.json is what the measuring command prints with --json. Each file keeps the lines above its header that say what
+FIGURES.json is what the measuring command prints. Each file keeps the lines above its header that say what
 its rows are; a new file has none yet.
 """
 

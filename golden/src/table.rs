@@ -1,4 +1,4 @@
-//! Tables: made once, shown in a terminal, on a page of Markdown, or by a template of HTML.
+//! Tables: made once, shown in a terminal or by a template of HTML.
 
 use serde::Serialize;
 
@@ -99,16 +99,6 @@ impl Table {
         }
         text
     }
-
-    /// For a page of Markdown.
-    pub fn markdown(&self) -> String {
-        let alignment = |column| if self.is_left(column) { "---|" } else { "---:|" };
-        let alignments: String = (0..self.header.len()).map(alignment).collect();
-        let line = |cells: &[&str]| format!("| {} |\n", cells.join(" | "));
-        let header: Vec<&str> = self.header.iter().map(String::as_str).collect();
-        let rows = self.rows.iter().map(|row| line(&row.iter().map(|cell| cell.text.as_str()).collect::<Vec<_>>()));
-        [line(&header), format!("|{alignments}\n")].into_iter().chain(rows).collect()
-    }
 }
 
 /// A line across a terminal.
@@ -133,12 +123,6 @@ mod tests {
         assert_eq!(wide.lines().nth(1).map(|rule| rule.chars().count()), Some(8 + 9 + 9), "{wide}");
         // `µ` has two bytes.
         assert_eq!(ends[0], ends[2] + 1, "{wide}");
-    }
-
-    #[test]
-    fn markdown_says_which_columns_are_words() {
-        let expected = "| what | µs | why |\n|---|---:|---|\n| one | 1.5 | so |\n| two | 10.0 | because |\n";
-        assert_eq!(table().markdown(), expected);
     }
 
     #[test]

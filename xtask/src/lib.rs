@@ -4,7 +4,6 @@ pub mod bench;
 pub mod confidence;
 pub mod corner_cases;
 pub mod drift;
-pub mod markdown;
 pub mod mutants;
 pub mod noise;
 pub mod stress;

@@ -1,4 +1,4 @@
-//! What `cargo xtask bench` measures, and the page and plot it becomes.
+//! What `cargo xtask bench` measures.
 
 pub mod cells;
 pub mod cycles;
@@ -6,8 +6,6 @@ pub mod filters;
 pub mod generation;
 pub mod levels;
 pub mod machine;
-pub mod page;
-pub mod plot;
 pub mod simulation_rate;
 pub mod solver;
 

@@ -3,9 +3,7 @@
 pub mod cases;
 pub mod float32;
 pub mod judge;
-pub mod plot;
 pub mod rtl;
-pub mod tables;
 
 use golden::design::DesignError;
 use golden::scene::SceneError;
@@ -64,9 +62,9 @@ pub fn table(scope: Scope, progress: &Progress) -> Result<Vec<Row>, HardError> {
     Ok(rows)
 }
 
-/// Whether no case had a result that nothing warned of, a NaN, or a force beyond reason without a status bit; and no
-/// RTL a word that is not the model's.
-pub fn is_sound(rows: &[Row]) -> bool {
-    let loud = |row: &Row| [&row.f64, &row.fixed, &row.wide].into_iter().flatten().all(|judged| judged.silent == 0);
-    rows.iter().all(|row| loud(row) && row.rtl_is_model != Some(false))
+/// The rows with a result that nothing warned of, a NaN or a force beyond reason without a status bit, or with an RTL word
+/// that is not the model's.
+pub fn unsound(rows: &[Row]) -> Vec<&Row> {
+    let silent = |row: &Row| [&row.f64, &row.fixed, &row.wide].into_iter().flatten().any(|judged| judged.silent > 0);
+    rows.iter().filter(|row| silent(row) || row.rtl_is_model == Some(false)).collect()
 }
