@@ -193,8 +193,11 @@ def beyond(design: Design, frames: npt.ArrayLike) -> Beyond:
 def rest(design: Design, frames: npt.ArrayLike) -> Rest:
     """What frames, ten or more, tell of a sensor on which nothing presses: each taxel's offset, noise and drift."""
 
-def errors(forces: Forces, truth: Forces) -> dict[str, Spread]:
-    """Errors e_Fx, e_Fy, e_Fz in percent of the normal force, e_mu of 1, e_phi of a turn."""
+def errors(forces: Forces | npt.ArrayLike, truth: Forces | npt.ArrayLike) -> dict[str, Spread]:
+    """Errors e_Fx, e_Fy, e_Fz in percent of the normal force, e_mu of 1, e_phi of a turn.
+
+    In place of `Forces` also numbers (n, 3): F_x, F_y, F_z in N.
+    """
 
 def calibrate(
     design: Design | str | os.PathLike[str],

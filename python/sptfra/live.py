@@ -38,6 +38,15 @@ def line_of(number: int, forces: Forces) -> str:
     return f"{number:>6}  F = ({x:8.3f}, {y:8.3f}, {z:8.3f}) N  mu = {forces.friction[0]:5.3f}  phi = {degrees:6.1f}°  {names}"
 
 
+def has_display() -> bool:
+    """Whether matplotlib can open a window here. Without a display it draws into memory and shows nothing."""
+    plt = pyplot()
+    figure = plt.figure()
+    shows = type(figure.canvas.manager).show
+    plt.close(figure)
+    return shows is not plt.FigureManagerBase.show
+
+
 class Window:
     """The force field of the last frame."""
 
@@ -154,6 +163,8 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         design = Design.load(options.design)
+        if options.plot and not has_display():
+            raise Error("--plot: there is no display for a window; set DISPLAY, or leave out --plot to print lines")
         window = Window(design) if options.plot else None
         lines, origin = stream(options)
         run(design, lines, origin, options.labels, window)

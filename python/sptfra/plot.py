@@ -23,8 +23,8 @@ def pyplot() -> Any:
 def plot_field(design: Design, forces: Forces, index: int = 0, ax: Any = None) -> Any:
     """Draws a frame's forces on the grid in millimetres: normal forces as colours, tangential ones as arrows.
 
-    Returns the matplotlib axes, `ax` if given. The arrow above the grid is the scale: the largest tangential force of a
-    taxel. Raises `ImportError` without matplotlib and `ValueError` where the forces have no field or there is no such
+    Returns the matplotlib axes, `ax` if given. The title's second line is the scale of the arrows: the largest
+    tangential force of a taxel. Raises `ImportError` without matplotlib and `ValueError` where the forces have no field or there is no such
     frame.
     """
     plt = pyplot()
@@ -53,12 +53,11 @@ def plot_field(design: Design, forces: Forces, index: int = 0, ax: Any = None) -
     if longest > 0.0:
         # The longest arrow is as long as a taxel is wide, one and a half times.
         scale = longest / (1.5 * min(pitch_x, pitch_y))
-        arrows = ax.quiver(
+        ax.quiver(
             x, y, field[..., 0], field[..., 1], angles="xy", scale_units="xy", scale=scale, pivot="mid", width=0.004,
             edgecolor="white", linewidth=0.4,
         )
-        ax.quiverkey(arrows, 0.8, 1.05, longest, f"{longest:.3g} N", labelpos="E")
-    _label(ax, forces, index)
+    _label(ax, forces, index, f"\nlongest arrow: {longest:.3g} N")
     return ax
 
 
@@ -113,8 +112,8 @@ def _edges(design: Design) -> tuple[float, float, float, float]:
     return (-pitch_x / 2, (design.columns - 0.5) * pitch_x, -pitch_y / 2, (design.rows - 0.5) * pitch_y)
 
 
-def _label(ax: Any, forces: Forces, index: int) -> None:
+def _label(ax: Any, forces: Forces, index: int, scale: str = "") -> None:
     ax.set(xlabel="x in mm", ylabel="y in mm", aspect="equal")
     force = forces.resultant[index]
     names = ", ".join(forces.names(index)).lower().replace("_", " ") or "good"
-    ax.set_title(f"F = ({force[0]:.2f}, {force[1]:.2f}, {force[2]:.2f}) N, {names}", loc="left", fontsize="medium")
+    ax.set_title(f"F = ({force[0]:.2f}, {force[1]:.2f}, {force[2]:.2f}) N, {names}{scale}", loc="left", fontsize="medium")

@@ -64,7 +64,18 @@ class Rest:
     #: Signs that something pressed.
     warnings: tuple[str, ...]
     _calibration: str = field(repr=False)
+    _tared: Design | None = field(repr=False)
     _refused: str = field(repr=False)
+
+    @property
+    def tared(self) -> Design:
+        """The design with these offsets taken off, dead and stuck taxels replaced, and this noise floor.
+
+        Raises `Error` where `save` does.
+        """
+        if self._tared is None:
+            raise Error(self._refused)
+        return self._tared
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the calibration that takes the offsets off, for `[sensor] calibration`: gain 0 for dead and stuck taxels.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use golden::check::{Beyond, beyond as count_beyond, check as look_for_faults};
+use golden::design::Calibration;
 use golden::frames::{Layout, read_frames_and_remark};
 use golden::geometry;
 use golden::matrices::Matrices;
@@ -115,9 +116,9 @@ pub fn rest<'py>(py: Python<'py>, design: &Design, frames: &Bound<'py, PyAny>) -
     let frames = frames.rows();
     let named = |error: RestError| format!("{}: {error}", design.name);
     let found = AtRest::of(design, &frames).map_err(|error| raised(named(error)))?;
-    let (calibration, refused) = match found.calibration(design, &frames) {
-        Ok(calibration) => (calibration.to_csv(), String::new()),
-        Err(error) => (String::new(), named(error)),
+    let (calibration, tared, refused) = match found.calibration(design, &frames) {
+        Ok(calibration) => (calibration.to_csv(), Some(tared(design, calibration, &found)?), String::new()),
+        Err(error) => (String::new(), None, named(error)),
     };
     let shape = [design.sensor.rows, design.sensor.columns];
     let of = |value: fn(&TaxelAtRest) -> f64| array(py, found.taxels.iter().map(value).collect(), &shape);
@@ -135,8 +136,18 @@ pub fn rest<'py>(py: Python<'py>, design: &Design, frames: &Bound<'py, PyAny>) -
     fields.set_item("noise_of_full_scale", found.noise_of_full_scale)?;
     fields.set_item("warnings", PyTuple::new(py, &found.warnings)?)?;
     fields.set_item("_calibration", calibration)?;
+    fields.set_item("_tared", tared)?;
     fields.set_item("_refused", refused)?;
     py.import("sptfra.results")?.getattr("Rest")?.call((), Some(&fields))
+}
+
+/// The design with the calibration of an unloaded sensor and the noise floor that suits it.
+fn tared(design: &golden::design::Design, calibration: Calibration, rest: &AtRest) -> PyResult<Design> {
+    let mut tared = design.clone();
+    tared.input.calibration = Some(calibration);
+    tared.algorithm.noise_floor_pa = rest.noise_floor_pa;
+    let checked = golden::design::Design::from_parts(&tared.to_toml(), &design.name, &tared.files());
+    Ok(Design::new(checked.map_err(raised)?))
 }
 
 /// Frames with their true forces.
@@ -231,8 +242,11 @@ pub fn errors<'py>(
     Ok(spreads)
 }
 
-/// What the errors are made of.
+/// What the errors are made of: `Forces`, or an array (n, 3) of `F_x`, `F_y`, `F_z`.
 fn outcomes(forces: &Bound<'_, PyAny>) -> PyResult<Vec<Outcome>> {
+    if !forces.hasattr("resultant")? {
+        return of_resultants(forces);
+    }
     let double = |name: &str| {
         let values = forces.getattr(name)?;
         values.call_method1("astype", ("float64",))
@@ -251,4 +265,23 @@ fn outcomes(forces: &Bound<'_, PyAny>) -> PyResult<Vec<Outcome>> {
         direction: *direction,
     };
     Ok(frames.map(outcome).collect())
+}
+
+/// Outcomes of resultants alone: friction and direction follow from them.
+fn of_resultants(forces: &Bound<'_, PyAny>) -> PyResult<Vec<Outcome>> {
+    let numpy = forces.py().import("numpy")?;
+    let array = numpy.call_method1("asarray", (forces,))?;
+    let shape: Vec<usize> = array.getattr("shape")?.extract()?;
+    let double = array.call_method1("astype", ("float64",));
+    let (&[_, 3], Ok(double)) = (shape.as_slice(), double) else {
+        return Err(PyValueError::new_err(format!(
+            "forces of shape {shape:?}; give what Solver.solve returns, or numbers of shape (n, 3): F_x, F_y, F_z in N"
+        )));
+    };
+    let resultants: PyReadonlyArray2<'_, f64> = double.extract()?;
+    let outcome = |force: numpy::ndarray::ArrayView1<'_, f64>| {
+        let [x, y, z] = [force[0], force[1], force[2]];
+        Outcome { force: [x, y, z], friction: x.hypot(y) / z.abs(), direction: y.atan2(x) }
+    };
+    Ok(resultants.as_array().rows().into_iter().map(outcome).collect())
 }

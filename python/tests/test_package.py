@@ -101,6 +101,8 @@ class Package(unittest.TestCase):
         matplotlib.use("agg")
         axes = sptfra.plot_field(design(), forces, 9)
         self.assertEqual(axes.get_xlabel(), "x in mm")
+        self.assertRegex(axes.get_title(loc="left"), r"^F = \(.*\) N, good\nlongest arrow: 0\.\d+ N$")
+        self.assertEqual(len(axes.artists), 0, "nothing beside the title that it may run into")
         self.assertEqual(axes.images[0].get_extent(), [-2.0, 14.0, -1.0, 5.0])
         with self.assertRaisesRegex(ValueError, "there is no frame 36 of 36"):
             sptfra.plot_field(design(), forces, 36)
@@ -134,6 +136,13 @@ class Package(unittest.TestCase):
             running.stdin.close()
             self.assertEqual(running.wait(), 1)
             self.assertIn("standard input, line 4", running.stderr.read().decode())
+
+    def test_live_says_that_there_is_no_display(self):
+        command = [sys.executable, "-m", "sptfra.live", str(ROOT / "designs" / "small.toml"), "--plot"]
+        without = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        done = subprocess.run(command, input=b"", capture_output=True, env={**without, "MPLBACKEND": "agg"}, check=False)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr.decode(), r"^error: (--plot: there is no display|pictures need matplotlib)")
 
     def test_live_passes_over_a_first_line_that_is_cut_off(self):
         frames, _ = sptfra.scene(path=ROOT / "scenes" / "sensor1-hertz.toml")

@@ -50,8 +50,16 @@ class Judging(unittest.TestCase):
             file = Path(folder) / "pad.calibration.csv"
             found.save(file)
             gains = np.loadtxt(file, delimiter=",")
+            pascals = sptfra.rest(design(), -frames[:, :12])
             with self.assertRaisesRegex(sptfra.Error, "pa_per_count"):
-                sptfra.rest(design(), -frames[:, :12]).save(file)
+                pascals.save(file)
+            with self.assertRaisesRegex(sptfra.Error, "pa_per_count"):
+                pascals.tared  # noqa: B018
+            found.tared.save(Path(folder) / "tared.toml")
+            tared = sptfra.Design.load(Path(folder) / "tared.toml")
+        self.assertEqual((tared, tared.name, tared.noise_floor_pa), (found.tared, "pad", found.noise_floor_pa))
+        status = [sptfra.Solver(one).solve(frames).has(sptfra.Status.NO_CONTACT).all() for one in (counting, tared)]
+        self.assertEqual(status, [False, True], "offsets are a contact, and none any more")
         self.assertEqual(gains[:, 0].tolist(), alive.astype(float).tolist())
         self.assertLess(abs(gains[alive, 1] + found.offset.ravel()[alive]).max(), 1e-9)
         with self.assertRaisesRegex(sptfra.Error, "3 frames at rest tell no noise"):

@@ -105,6 +105,12 @@ class Solving(unittest.TestCase):
         self.assertIsNone(self.truth.field)
         self.assertEqual(set(sptfra.errors(forces, self.truth)), {"e_Fx", "e_Fy", "e_Fz", "e_mu", "e_phi"})
         self.assertEqual(sptfra.errors(self.truth, self.truth)["e_Fx"].max, 0.0)
+        of_arrays = sptfra.errors(forces.resultant, self.truth.resultant.tolist())
+        for name, spread in sptfra.errors(forces, self.truth).items():
+            self.assertAlmostEqual(of_arrays[name].max, spread.max, places=6)
+        for wrong in (forces.resultant[:, :2], forces.resultant[0], None, "forces"):
+            with self.assertRaisesRegex(ValueError, r"give what Solver.solve returns, or numbers of shape \(n, 3\)"):
+                sptfra.errors(wrong, self.truth)
         with self.assertRaisesRegex(ValueError, "36 frames and true forces of 35"):
             short = self.solver.solve(self.frames[:35])
             sptfra.errors(forces, short)

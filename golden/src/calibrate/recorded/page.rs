@@ -5,9 +5,10 @@ use std::fmt::Write;
 use super::report::Recorded;
 use crate::design::{Design, Sensor};
 
-/// Sides of a plot and its margin, in pixels.
-const SIDES: [f64; 2] = [360.0, 300.0];
-const MARGIN: f64 = 48.0;
+/// Sides of a plot in pixels, and its margins: room for a label of six digits on the left, for half of one on the right.
+const SIDES: [f64; 2] = [380.0, 300.0];
+const MARGIN: f64 = 64.0;
+const RIGHT: f64 = 28.0;
 
 /// The page of what recordings told, each with a title and the unit of what was measured.
 pub fn page(design: &Design, parts: &[(&str, &str, &Recorded)]) -> String {
@@ -58,7 +59,7 @@ impl Plot {
             0.5 * height,
             axes[1],
             bottom = height - m,
-            right = width - 12.0,
+            right = width - RIGHT,
         );
         let plot = Self { largest, body: String::new() };
         for tick in [0.0, 0.5, 1.0] {
@@ -80,7 +81,7 @@ impl Plot {
     fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [width, height] = SIDES;
         [
-            MARGIN + (width - 12.0 - MARGIN) * x / self.largest[0],
+            MARGIN + (width - RIGHT - MARGIN) * x / self.largest[0],
             height - MARGIN - (height - 2.0 * MARGIN) * y / self.largest[1],
         ]
     }
@@ -169,6 +170,7 @@ fn gains(found: &Recorded, sensor: &Sensor) -> String {
 
 fn figure(value: f64) -> String {
     match value.abs() {
+        size if size >= 1e6 => format!("{value:.1e}"),
         size if size >= 1000.0 => format!("{value:.0}"),
         size if size >= 10.0 => format!("{value:.1}"),
         _ => format!("{value:.2}"),
@@ -177,4 +179,29 @@ fn figure(value: f64) -> String {
 
 fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pixels of a character at 12 px, and of the axis title that stands upright.
+    const CHARACTER: f64 = 7.0;
+    const UPRIGHT: f64 = 16.0;
+
+    #[test]
+    fn labels_of_six_digits_are_not_cut() {
+        let plot = Plot::new("Pressures", ["measured (Pa)", "found (Pa)"], [643_210.0, 643_210.0]).svg();
+        let mut labels = 0;
+        for text in plot.split("<text x=\"").skip(1) {
+            let (x, text) = text.split_once('"').expect("a number");
+            let (x, words) = (x.parse::<f64>().expect("a number"), text.split(['>', '<']).nth(1).expect("words"));
+            let width = CHARACTER * words.chars().count() as f64;
+            let [left, right] =
+                if text.contains("\"end\"") { [x - width, x] } else { [x - 0.5 * width, x + 0.5 * width] };
+            assert!(left >= UPRIGHT && right <= SIDES[0], "{words}: {left} to {right}");
+            labels += usize::from(words.parse::<f64>().is_ok());
+        }
+        assert_eq!(labels, 6);
+    }
 }
