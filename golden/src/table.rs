@@ -1,4 +1,6 @@
 //! Tables: made once, shown in a terminal or by a template of HTML.
+//!
+//! Made here, since libraries of tables draw for a terminal and keep their cells from a template.
 
 use serde::Serialize;
 

@@ -1,4 +1,6 @@
 //! `NumPy`'s `.npy` files: arrays of numbers, as `numpy.save` writes them (NEP 1, versions 1 to 3).
+//!
+//! Read here, since npyz brings a parser generator for a header of three keys and still reads one type at a time.
 
 /// What every such file begins with.
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
