@@ -25,7 +25,7 @@ help: ## This menu
 	@echo
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-13s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 	@echo
-	@echo 'make run DESIGN=designs/sensor2-none.toml SCENE=scenes/sensor2-disc.toml  for another design and scene'
+	@echo 'make run DESIGN=designs/sensor2-wide.toml SCENE=scenes/sensor2-disc.toml  for another design and scene'
 
 .PHONY: run
 run: tools build ## Design to Verilog to simulation: 36 frames through the RTL, with a table of the results
@@ -59,25 +59,27 @@ test-times: test-tools ## All tests, one topic after the other, and the slowest 
 formal: tools ## Prove the stream rules and the frame handshake with Yosys and z3 (part of `make test`)
 	SPTFRA_TEST_ALL=1 $(CARGO) test -p sptfra-testbench --test suite formal:: -- --nocapture
 
+# Designs that only developers need.
+TEST_DESIGNS  := golden/tests/designs
 # The 4 x 3 design by either plan.
 SMALL_DESIGNS := $(addprefix $(TARGET)/trust/small-,paper.toml reduced.toml)
 FRAMES_COUNT  ?= 1000000
 MUTANTS_COUNT ?= 110
 
-$(TARGET)/trust/small-%.toml: designs/small.toml
+$(TARGET)/trust/small-%.toml: $(TEST_DESIGNS)/small.toml
 	@mkdir -p $(dir $@)
 	@sed 's/^name = .*/name = "small_$*"/; s/^\[algorithm\]/&\nplan = "$*"/' $< > $@
 
 .PHONY: stress
 stress: tools $(SMALL_DESIGNS) ## A million frames, good and bad, with pauses and resets, through either plan, the grid search's stages, with banks written among them (an hour)
-	@set -e; for design in $(SMALL_DESIGNS) designs/small-joint.toml designs/small-scanner.toml; do \
+	@set -e; for design in $(SMALL_DESIGNS) $(TEST_DESIGNS)/small-joint.toml $(TEST_DESIGNS)/small-scanner.toml; do \
 		$(XTASK_RELEASE) stress $$design --frames $(FRAMES_COUNT); done
 
 .PHONY: mutants
 mutants: tools $(SMALL_DESIGNS) ## 280 copies with a fault each: which does the comparison not notice? (half an hour)
 	@set -e; for design in $(SMALL_DESIGNS); do $(XTASK) mutants $$design --count $(MUTANTS_COUNT) \
 		--explained xtask/survivors.toml; done
-	@$(XTASK) mutants designs/small-joint.toml --count 60 --explained xtask/survivors.toml
+	@$(XTASK) mutants $(TEST_DESIGNS)/small-joint.toml --count 60 --explained xtask/survivors.toml
 
 .PHONY: lint
 lint: ## Formatting and clippy, warnings are errors
@@ -160,9 +162,9 @@ synth: tools build ## Yosys' count of multipliers, memories, LUT and FF beside t
 
 # Times are measured with a release build. tools/results.py writes its files in results/.
 BENCH_FOLDER  := $(TARGET)/bench
-BENCH_SOLVER  := $(addprefix designs/,sensor1-none.toml sensor1-reduced.toml sensor1-resultants.toml sensor1-fast.toml \
+BENCH_SOLVER  := $(addprefix designs/,paper.toml sensor1-reduced.toml sensor1-resultants.toml sensor1-fast.toml \
 	bed-mat.toml)
-BENCH_DESIGNS := designs/sensor1-reduced.toml designs/sensor2-reduced.toml designs/sensor1-fast.toml designs/sensor1-fast-64.toml \
+BENCH_DESIGNS := designs/sensor1-reduced.toml $(TEST_DESIGNS)/sensor2-reduced.toml designs/sensor1-fast.toml designs/sensor1-fast-64.toml \
 	designs/bed-mat.toml
 BENCH_CELLS   := sensor1-reduced sensor1-reduced-64 sensor1-resultants sensor1-fast sensor1-fast-64
 
@@ -185,8 +187,8 @@ bench: tools ## Measure solver, generator, simulation, cycles and cells, into re
 
 # One point a job; sweeps on more than one machine: `make sweep-cluster SNAKEMAKE_OPTIONS='--executor slurm --jobs 100'`.
 SWEEP_FOLDER  := $(TARGET)/sweep
-SWEEP_DESIGNS ?= $(foreach sensor,sensor1 sensor2,$(foreach kind,reduced none f1-l40 f2-p50 f3 fast,designs/$(sensor)-$(kind).toml)) \
-	designs/sensor1-wide.toml designs/sensor2-wide.toml
+SWEEP_DESIGNS ?= $(addprefix designs/,paper.toml sensor1-reduced.toml sensor1-fast.toml sensor1-wide.toml sensor2-fast.toml sensor2-wide.toml) \
+	$(addprefix $(TEST_DESIGNS)/,sensor1-f3.toml sensor2-reduced.toml sensor2-f3.toml)
 SWEEP_SCENES  ?= $(addprefix scenes/,sensor1-hertz.toml sensor1-tilted.toml two-contacts.toml sensor2-disc.toml \
 	sensor2-punch.toml sensor2-held.toml)
 SWEEP_OPTIONS ?= --simulate base --kinds
@@ -216,7 +218,7 @@ sweep-cluster: sweep-tools build ## The report by Snakemake, one `sptfra run --j
 	    SPTFRA='$(BIN)/sptfra' .venv/bin/snakemake --snakefile tools/sweep.smk $(SNAKEMAKE_OPTIONS)
 
 # For parts that an open flow places and routes.
-DESIGNS ?= designs/timing.toml
+DESIGNS ?= xtask/designs/timing.toml
 SEEDS   ?= 1
 
 .PHONY: timing

@@ -20,14 +20,14 @@ from test_sptfra import ROOT, design
 
 class Hardware(unittest.TestCase):
     def test_the_plan_is_what_inspect_prints(self):
-        plan = sptfra.plan(sptfra.Design.load(ROOT / "designs" / "small.toml"))
+        plan = sptfra.plan(sptfra.Design.load(ROOT / "golden" / "tests" / "designs" / "small.toml"))
         self.assertEqual(plan.details["predicted"]["latency_cycles"], plan.latency_cycles)
         self.assertEqual(plan.latency_us, plan.latency_cycles / 125.0)
         self.assertAlmostEqual(plan.frames_per_second, 125e6 / plan.interval_cycles)
         self.assertGreater(plan.dsp, 0)
 
     def test_the_core_is_bit_exact_and_as_fast_as_planned(self):
-        small = sptfra.Design.load(ROOT / "designs" / "small.toml")
+        small = sptfra.Design.load(ROOT / "golden" / "tests" / "designs" / "small.toml")
         frames, _ = sptfra.scene(small)
         core, plan = sptfra.simulate(small, frames), sptfra.plan(small)
         self.assertTrue(core.bit_exact)
@@ -38,7 +38,7 @@ class Hardware(unittest.TestCase):
         np.testing.assert_allclose(core.forces.field, solved.field, atol=3e-4 * np.abs(solved.field).max())
 
     def test_the_core_counts_contacts(self):
-        text = (ROOT / "designs" / "small.toml").read_text()
+        text = (ROOT / "golden" / "tests" / "designs" / "small.toml").read_text()
         small = sptfra.Design.from_toml(text.replace("count_contacts = false", "contacts = 2\ncount_contacts = true"))
         frames = np.zeros((2, 3, 4))
         frames[0, :, 0], frames[0, :, 3], frames[1, :2, :2] = -4e4, -2e4, -3e4

@@ -190,7 +190,7 @@ class Solving(unittest.TestCase):
         self.assertEqual(scene.truth.records.shape, (1, 2))
         np.testing.assert_allclose(scene.truth.records["F_z"], [[-3.0, -2.0]])
         np.testing.assert_allclose(scene.truth.records["x"], [[0.010, 0.027]])
-        text = (ROOT / "designs" / "sensor1-none.toml").read_text(encoding="utf-8")
+        text = (ROOT / "designs" / "paper.toml").read_text(encoding="utf-8")
         several = sptfra.Design.from_toml(text.replace("[algorithm]\n", "[algorithm]\ncontacts = 3\n"))
         self.assertEqual((self.design.contacts, several.contacts), (1, 3))
         forces = sptfra.Solver(several).solve(np.tile(scene.frames, (70, 1, 1)))

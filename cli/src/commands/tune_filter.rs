@@ -14,7 +14,7 @@ use serde::Serialize;
 use crate::arguments::design_file;
 use crate::message::{self, json_or, say};
 
-const EXAMPLE: &str = "Example:\n  sptfra tune-filter designs/sensor1-f3.toml --out tuned.toml";
+const EXAMPLE: &str = "Example:\n  sptfra tune-filter pad --out tuned.toml";
 
 const CHOOSE_FILES: &str = r#"In the design file:
   [algorithm]

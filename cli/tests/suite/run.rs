@@ -12,11 +12,10 @@ use testbench::frame_set::FrameSet;
 use testbench::run::{Options, page, run_plan};
 use testbench::trial::Timing;
 
-use crate::support::{program, sptfra};
+use crate::support::{program, sptfra, workspace};
 
-fn design(name: &str) -> String {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace");
-    root.join("designs").join(name).display().to_string()
+fn small() -> String {
+    workspace("golden/tests/designs/small.toml").display().to_string()
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -46,7 +45,7 @@ fn file(folder: &tempfile::TempDir, name: &str, contents: &str) -> (PathBuf, Str
 
 #[test]
 fn the_small_design_is_bit_exact_and_its_json_is_complete() {
-    let output = sptfra(&["run", &design("small.toml"), "--json"]);
+    let output = sptfra(&["run", &small(), "--json"]);
     let report = json(&output);
     assert_eq!(report["bit_exact"], true, "{report:#}");
     assert!(output.status.success());
@@ -74,7 +73,8 @@ fn the_paper_is_in_the_same_table() {
         let frames = FrameSet::standing(&plan.design.sensor).expect("frames");
         run_plan(&plan, &frames, &Options::default(), &Progress::hidden()).expect("runs")
     };
-    let [line, grid] = ["small.toml", "sensor1-fast.toml"].map(|name| run(&design(name)));
+    let [line, grid] =
+        [small(), workspace("designs/sensor1-fast.toml").display().to_string()].map(|design| run(&design));
     assert_eq!(line.paper_errors, None);
     assert!(!page::render(&line).contains("paper's, %"));
     let page = page::render(&grid);
@@ -86,7 +86,7 @@ fn the_paper_is_in_the_same_table() {
 
 #[test]
 fn the_table_has_no_control_codes_off_a_terminal() {
-    let output = sptfra(&["run", &design("small.toml")]);
+    let output = sptfra(&["run", &small()]);
     let (page, messages) = (text(&output.stdout), text(&output.stderr));
     assert!(page.contains("latency, cycles") && page.contains("RTL against the model"), "{page}");
     assert!(!page.contains('\u{1b}') && messages.is_empty(), "{messages}");
@@ -97,7 +97,7 @@ fn the_table_has_no_control_codes_off_a_terminal() {
 /// As if the hardware took a cycle more, or two fewer, than the plan says.
 #[test]
 fn other_cycles_than_predicted_are_wrong() {
-    let mut plan = Plan::new(&Design::load(Path::new(&design("small.toml"))).expect("a design")).expect("a plan");
+    let mut plan = Plan::new(&Design::load(Path::new(&small())).expect("a design")).expect("a plan");
     let frames = FrameSet::standing(&plan.design.sensor).expect("frames");
     let report = |plan: &Plan| run_plan(plan, &frames, &Options::default(), &Progress::hidden()).expect("runs");
     let right = report(&plan);
@@ -125,7 +125,7 @@ fn frames_and_reference_come_from_files() {
     let row = "-900,-1000,-900,-800,-500,300,-900,-800,20,-10,-5,-1\n";
     let (_, frames) = file(&folder, "frames.csv", &row.repeat(3));
     let (_, forces) = file(&folder, "forces.csv", &"0,0.1,0.0,-0.2,0.5,0.0,0.5,0.0\n".repeat(3));
-    let output = sptfra(&["run", &design("small.toml"), "--frames", &frames, "--reference", &forces, "--json"]);
+    let output = sptfra(&["run", &small(), "--frames", &frames, "--reference", &forces, "--json"]);
     let report = json(&output);
     assert_eq!((&report["frames"], &report["true_force_errors"]["frames"]), (&Value::from(3), &Value::from(3)));
 }
@@ -136,7 +136,7 @@ fn a_trace_is_written_where_asked() {
     let row = "-900,-1000,-900,-800,-500,300,-900,-800,20,-10,-5,-1\n";
     let (_, frames) = file(&folder, "frames.csv", row);
     let wave = folder.path().join("wave.vcd");
-    sptfra(&["run", &design("small.toml"), "--frames", &frames, "--trace", &wave.display().to_string()]);
+    sptfra(&["run", &small(), "--frames", &frames, "--trace", &wave.display().to_string()]);
     assert!(fs::read_to_string(wave).expect("written").contains("m_axis_tvalid"));
 }
 
@@ -146,30 +146,29 @@ fn bad_files_are_refused_with_their_place() {
     assert!(refused(&["run", "no-such.toml"]).contains("no-such.toml"));
     let (_, unknown) = file(&folder, "unknown.toml", "format = 3\nname = \"x\"\nfrobnicate = 1\n");
     assert!(refused(&["run", &unknown]).contains("frobnicate"));
-    let joint = fs::read_to_string(design("sensor1-fast.toml")).expect("a design");
-    let weights = fs::read_to_string(design("sensor1-fast.weights.csv")).expect("weights");
+    let joint = fs::read_to_string(workspace("designs/sensor1-fast.toml")).expect("a design");
+    let weights = fs::read_to_string(workspace("designs/sensor1-fast.weights.csv")).expect("weights");
     file(&folder, "sensor1-fast.weights.csv", &weights);
     let (_, paper) = file(&folder, "paper.toml", &joint.replace("plan = \"reduced\"", "plan = \"paper\""));
     assert!(refused(&["run", &paper]).contains("plan = \"reduced\""));
     let (_, short) = file(&folder, "short.csv", "1,2,3\n");
-    let message = refused(&["run", &design("small.toml"), "--frames", &short]);
+    let message = refused(&["run", &small(), "--frames", &short]);
     assert!(message.contains("short.csv") && message.contains('1'), "{message}");
     let (_, frames) = file(&folder, "frames.csv", &format!("{}\n", ["-1"; 12].join(",")));
     let (_, forces) = file(&folder, "forces.csv", &"0,0,0,-1,0,0,0,0\n".repeat(2));
-    let message = refused(&["run", &design("small.toml"), "--frames", &frames, "--reference", &forces]);
+    let message = refused(&["run", &small(), "--frames", &frames, "--reference", &forces]);
     assert!(message.contains("forces.csv"), "{message}");
 }
 
 #[test]
 fn a_reference_needs_frames() {
-    assert!(refused(&["run", &design("small.toml"), "--reference", "forces.csv"]).contains("--frames"));
+    assert!(refused(&["run", &small(), "--reference", "forces.csv"]).contains("--frames"));
 }
 
 #[test]
 fn missing_tools_are_named_with_the_remedy() {
     let folder = tempfile::tempdir().expect("a folder");
-    let output =
-        program().args(["run", &design("small.toml")]).env("SPTFRA_TOOLS", folder.path()).output().expect("starts");
+    let output = program().args(["run", &small()]).env("SPTFRA_TOOLS", folder.path()).output().expect("starts");
     let message = text(&output.stderr);
     assert!(!output.status.success());
     assert!(message.contains("verilator not found in") && message.contains("make tools"), "{message}");
@@ -177,7 +176,7 @@ fn missing_tools_are_named_with_the_remedy() {
 
 #[test]
 fn a_compiler_that_does_not_run_is_named_with_the_remedy() {
-    let output = program().args(["run", &design("small.toml")]).env("CXX", "false").output().expect("starts");
+    let output = program().args(["run", &small()]).env("CXX", "false").output().expect("starts");
     let message = text(&output.stderr);
     assert!(!output.status.success() && text(&output.stdout).is_empty());
     assert!(message.starts_with("error: the C++ compiler (false) does not run: "), "{message}");
@@ -186,7 +185,7 @@ fn a_compiler_that_does_not_run_is_named_with_the_remedy() {
 
 #[test]
 fn activity_is_written_to_files_that_say_so() {
-    let message = refused(&["run", &design("small.toml"), "--saif", "activity.txt"]);
+    let message = refused(&["run", &small(), "--saif", "activity.txt"]);
     assert!(message.contains("activity.txt: the name of a SAIF file ends in .saif"), "{message}");
-    assert!(refused(&["run", &design("small.toml"), "--saif", "--trace"]).contains("cannot be used with"));
+    assert!(refused(&["run", &small(), "--saif", "--trace"]).contains("cannot be used with"));
 }

@@ -10,7 +10,7 @@ pub fn workspace(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join(path)
 }
 
-/// One of the designs that come with the project, by its file name without the ending.
+/// One of the shipped designs, by its file name without the ending.
 pub fn shipped(file: &str) -> Design {
     Design::load(&workspace(&format!("designs/{file}.toml"))).expect("a good design")
 }

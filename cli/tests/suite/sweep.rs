@@ -24,7 +24,7 @@ fn root() -> PathBuf {
 
 /// 4 by 3 taxels.
 fn small() -> String {
-    root().join("designs/small.toml").display().to_string()
+    root().join("golden/tests/designs/small.toml").display().to_string()
 }
 
 fn text(bytes: &[u8]) -> String {

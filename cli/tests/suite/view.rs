@@ -126,7 +126,7 @@ fn every_signal_of_the_views_is_in_the_trace() {
 #[test]
 fn a_frame_is_shown_plainly_where_there_is_no_terminal() {
     let folder = tempfile::tempdir().expect("a folder");
-    let design = workspace("designs/small.toml").display().to_string();
+    let design = workspace("golden/tests/designs/small.toml").display().to_string();
     let ran = sptfra_in(folder.path(), &["view", &design, "--frame", "9"]);
     let page = text(&ran.stdout);
     assert!(ran.status.success() && ran.stderr.is_empty(), "{}", text(&ran.stderr));
@@ -185,7 +185,7 @@ sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
 #[test]
 fn several_frames_play_in_one_place_of_a_terminal_and_are_pages_elsewhere() {
     let folder = tempfile::tempdir().expect("a folder");
-    let design = workspace("designs/small.toml").display().to_string();
+    let design = workspace("golden/tests/designs/small.toml").display().to_string();
     let view = |more: &[&str]| sptfra_in(folder.path(), &[&["view", &design], more].concat());
     let pages = text(&view(&["--frame", "3-5"]).stdout);
     assert_eq!(pages.matches("frame ").count(), 3, "{pages}");
@@ -279,8 +279,8 @@ fn completions_and_manual_know_every_command() {
 #[test]
 fn frames_that_are_suspicious_are_shown_with_a_warning_and_those_of_another_sensor_not_at_all() {
     let folder = tempfile::tempdir().expect("a folder");
-    let design = workspace("designs/small.toml").display().to_string();
-    let sensor = golden::design::Design::load(&workspace("designs/small.toml")).expect("a design").sensor;
+    let design = workspace("golden/tests/designs/small.toml").display().to_string();
+    let sensor = golden::design::Design::load(&workspace("golden/tests/designs/small.toml")).expect("a design").sensor;
     let frames = testbench::frame_set::FrameSet::standing(&sensor).expect("frames").stress;
     let pulled: Vec<Vec<f64>> = frames.iter().map(|frame| frame.iter().map(|stress| -stress).collect()).collect();
     let file = folder.path().join("pulled.csv");

@@ -107,7 +107,7 @@ fn c_gets_every_figure_of_golden() {
     let weights = "sensor1-wide.weights.csv";
     fs::copy(root().join("designs").join(weights), folder.path().join(weights)).expect("copied");
     let network = text("sensor1-wide.toml").replace("outputs =", "contacts = 4\noutputs =");
-    let counts = text("sensor2-reduced.toml")
+    let counts = text("sensor1-reduced.toml")
         .replace("outputs =", "contacts = 2\noutputs =")
         .replace("depth_mm =", "pa_per_count = -12.5\ndead = [12]\ntension = \"clipped\"\ndepth_mm =")
         .replace("[hardware]\n", "[hardware]\nsamples = \"int16\"\n");

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::designs::design;
 use golden::check::{Finding, Kind, check};
 use golden::design::{Curve, Design, Tension};
 use golden::frames::read_labelled_frames;
@@ -11,10 +12,6 @@ use golden::solver::{Solver, Status};
 
 fn repository(path: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
-}
-
-fn design(name: &str) -> Design {
-    Design::load(&repository(&format!("designs/{name}.toml"))).unwrap()
 }
 
 /// The standing frames of a design as its sensor delivers them, with noise.

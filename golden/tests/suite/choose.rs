@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use crate::designs::design;
 use golden::choose::{self, Choice, candidate_count, mean_error, reference_frames};
 use golden::design::{Choices, Design, Estimator, Filter, MatrixFilter};
 use golden::filter::FilteredMatrices;
@@ -10,12 +11,9 @@ use golden::matrices::{Matrices, MatrixName};
 use golden::scene::{Scene, SceneFrame};
 use golden::solver::Solver;
 
+/// The folder of the designs with filter F3.
 fn designs() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs")
-}
-
-fn design(name: &str) -> Design {
-    Design::load(&designs().join(format!("{name}.toml"))).unwrap()
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/designs")
 }
 
 fn search(design: &Design, frames: &[SceneFrame]) -> Choice {
@@ -160,9 +158,9 @@ fn wrong_scenes_are_refused() {
     for (filter, parts) in [
         (Filter::F1 { l: 40 }, vec!["sensor1_f3", "not f3", "scenes = ["]),
         (Filter::F3 { scenes: Vec::new(), choices: None }, vec!["sensor1_f3", "no scenes", "scenes = ["]),
-        (scenes("../scenes/absent.toml"), vec!["absent.toml", "cannot read"]),
-        (scenes("../scenes/sensor2-disc.toml"), vec!["sensor2-disc.toml", "[sensor]", "sensor1_f3", "pitch_mm"]),
-        (scenes("sensor1-none.toml"), vec!["reference scene", "sensor1-none.toml", "line 11", "algorithm"]),
+        (scenes("../../../scenes/absent.toml"), vec!["absent.toml", "cannot read"]),
+        (scenes("../../../scenes/sensor2-disc.toml"), vec!["sensor2-disc.toml", "[sensor]", "sensor1_f3", "pitch_mm"]),
+        (scenes("odd.toml"), vec!["reference scene", "odd.toml", "line 11", "algorithm"]),
     ] {
         let message = with(filter);
         for part in parts {

@@ -1,11 +1,10 @@
 //! Sensors that read no tension: what a calibration on clipped frames reaches, on contacts that it has not seen.
 
 use std::fmt::Write;
-use std::path::Path;
 
 use crate::contacts::{Pressed, Truth, errors_of as judge, frames, inside};
+use crate::designs::design;
 use crate::families::{cells, judge as judged, share};
-use golden::design::Design;
 use golden::scene::{Kind, Medium};
 use golden::solver::Solver;
 
@@ -13,10 +12,6 @@ const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
 /// Of contacts; the calibrations have seed 1 and another way to draw.
 const SEED: u64 = 0x5eed_0ff0;
 const FRICTIONS: [f64; 3] = [0.2, 0.5, 0.8];
-
-fn design(name: &str) -> Design {
-    Design::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs").join(format!("{name}.toml"))).unwrap()
-}
 
 /// Frames as a sensor reads them that knows no pull.
 fn clipped(set: &[Pressed], friction: f64, noise: f64) -> Vec<Truth> {

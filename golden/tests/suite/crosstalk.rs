@@ -9,7 +9,7 @@ use golden::solver::Solver;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::dead_taxels::shipped;
+use crate::designs::design as shipped;
 
 /// Each reading has this share of the sums of its row and of its column added.
 const SHARE: f64 = 0.02;

@@ -1,7 +1,6 @@
 //! Dead taxels whose place is known: what replaces them, and what is left of their error.
 
-use std::path::Path;
-
+use crate::designs::design as shipped;
 use golden::dead_taxels::{DeadTaxels, MOST_DEAD};
 use golden::design::Design;
 use golden::kernel::Kernel;
@@ -11,11 +10,6 @@ use golden::solver::{Solver, Status};
 use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-
-pub fn shipped(name: &str) -> Design {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs").join(format!("{name}.toml"));
-    Design::load(&path).unwrap()
-}
 
 /// Frames of contacts of some sizes and places, each pushed in eight directions.
 fn scenes(sensor: &Sensor) -> Vec<Vec<SceneFrame>> {

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::designs::design;
 use golden::design::{Design, Kernel};
 use golden::estimators::line;
 use golden::kernel;
@@ -13,10 +14,6 @@ use proptest::prelude::*;
 
 fn file(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
-}
-
-fn design(name: &str) -> Design {
-    Design::load(&file(&format!("designs/{name}.toml"))).unwrap()
 }
 
 fn frames(name: &str) -> Vec<SceneFrame> {

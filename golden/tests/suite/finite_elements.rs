@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use golden::design::Design;
+use crate::designs::design;
 use golden::forces::read_outcomes;
 use golden::frames::read_frames;
 use golden::geometry;
@@ -44,10 +44,6 @@ fn frames(sensor: &str) -> Vec<Frame> {
             truth,
         })
         .collect()
-}
-
-fn design(name: &str) -> Design {
-    Design::load(&repository(&format!("designs/{name}.toml"))).unwrap()
 }
 
 /// Length of the error of the tangential force, and error of the normal one, in percent of the normal force.

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use crate::designs::folders;
 use golden::design::Design;
 use golden::forces::read_outcomes;
 use golden::frames::{read_labelled_frames, write_frames};
@@ -42,11 +43,10 @@ const WORDS: [&str; 24] = [
     "\u{feff}",
 ];
 
-/// The files of a folder of the workspace with this ending.
-fn texts(folder: &str, ending: &str) -> Vec<String> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join(folder);
+/// The files of a folder with this ending.
+fn texts(folder: &Path, ending: &str) -> Vec<String> {
     let mut paths: Vec<PathBuf> =
-        fs::read_dir(root).expect("a folder").map(|entry| entry.expect("there").path()).collect();
+        fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("there").path()).collect();
     paths.sort();
     let right = |path: &PathBuf| path.extension().is_some_and(|found| found == ending);
     paths.into_iter().filter(right).map(|path| fs::read_to_string(path).expect("text")).collect()
@@ -54,24 +54,30 @@ fn texts(folder: &str, ending: &str) -> Vec<String> {
 
 fn designs() -> &'static [String] {
     static TEXTS: OnceLock<Vec<String>> = OnceLock::new();
-    TEXTS.get_or_init(|| texts("designs", "toml"))
+    TEXTS.get_or_init(|| folders().iter().flat_map(|folder| texts(folder, "toml")).collect())
 }
 
-/// The weights that designs name.
-fn weights() -> &'static [(&'static str, String)] {
+/// Weights and bases that designs name.
+fn named() -> &'static [(&'static str, String)] {
     static TEXTS: OnceLock<Vec<(&str, String)>> = OnceLock::new();
     TEXTS.get_or_init(|| {
-        let of = |name: &'static str| {
-            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs").join(name);
-            (name, fs::read_to_string(path).expect("readable"))
+        let of = |(folder, name): (usize, &'static str)| {
+            (name, fs::read_to_string(folders()[folder].join(name)).expect("readable"))
         };
-        ["sensor1-fast.weights.csv", "sensor2-fast.weights.csv"].map(of).to_vec()
+        [
+            (0, "sensor1-fast.weights.csv"),
+            (0, "sensor2-fast.weights.csv"),
+            (1, "../../../designs/paper.toml"),
+            (1, "../../../designs/sensor1-reduced.toml"),
+        ]
+        .map(of)
+        .to_vec()
     })
 }
 
 fn scenes() -> &'static [String] {
     static TEXTS: OnceLock<Vec<String>> = OnceLock::new();
-    TEXTS.get_or_init(|| texts("scenes", "toml"))
+    TEXTS.get_or_init(|| texts(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes"), "toml"))
 }
 
 /// A change at a place, given as a share of the text's length.
@@ -131,7 +137,7 @@ proptest! {
     #[test]
     fn a_damaged_design_is_read_or_refused(which in any::<prop::sample::Index>(), changes in changes()) {
         let text = changed(&designs()[which.index(designs().len())], &changes);
-        match Design::from_parts(&text, "fuzzed.toml", weights()) {
+        match Design::from_parts(&text, "fuzzed.toml", named()) {
             // What is accepted can be written down and read again.
             Ok(design) => {
                 let again = Design::from_parts(&design.to_toml(), "fuzzed.toml", &design.files());

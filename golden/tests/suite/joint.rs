@@ -1,9 +1,9 @@
 //! The grid search on ground truth: what it reaches, on contacts that the calibration has not seen.
 
-use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use crate::contacts::{Pressed, Worst, centred, inside, pairs, worst};
+use crate::designs::design;
 use golden::calibrate::{CalibrateError, Settings, calibrate};
 use golden::design::{Design, Estimator, Input, Outputs, PlanKind, TrainingSet};
 use golden::scene::{Kind, Medium, Shape, normal};
@@ -22,14 +22,6 @@ const SEED: u64 = 0x5eed_0ff0;
 /// Of contacts that nothing was tried on before the calibration was settled.
 const OTHER_SEED: u64 = 0x00c0_ffee;
 const FRICTIONS: [f64; 3] = [0.2, 0.5, 0.8];
-
-fn design_file(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs").join(format!("{name}.toml"))
-}
-
-fn design(name: &str) -> Design {
-    Design::load(&design_file(name)).unwrap()
-}
 
 fn small(algorithm: &str) -> Design {
     let sensor = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
@@ -377,10 +369,10 @@ fn calibration_trains_at_the_noise_of_the_sensor() {
 #[ignore = "prints the rows of results/contact-sets.csv; minutes"]
 fn table() {
     for sensor in ["sensor1", "sensor2"] {
-        let shipped = ["none", "fast", "fast-100", "wide"].map(|kind| format!("{sensor}-{kind}"));
-        let names: Vec<&String> = shipped.iter().filter(|name| design_file(name).is_file()).collect();
+        let names = ["none", "fast", "fast-100", "wide"].map(|kind| format!("{sensor}-{kind}"));
+        let names: Vec<String> = names.into_iter().filter(|name| name != "sensor2-fast-100").collect();
         let solvers: Vec<Solver> = names.iter().map(|name| Solver::new(&design(name)).unwrap()).collect();
-        let taxels = design(names[0]).sensor;
+        let taxels = design(&names[0]).sensor;
         for contacts in fast::SETS {
             let set = fast::set(&taxels, contacts);
             let quoted = if contacts.contains(',') { format!("\"{contacts}\"") } else { contacts.to_owned() };

@@ -10,6 +10,8 @@ mod crosstalk;
 mod curve;
 mod dead_taxels;
 mod design_file;
+#[allow(dead_code, reason = "shared with the tests of the other crates")]
+mod designs;
 #[allow(dead_code, reason = "shared with the tests of the RTL, which use all of it")]
 mod effort;
 mod estimator;

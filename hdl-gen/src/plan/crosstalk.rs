@@ -70,7 +70,7 @@ mod tests {
     /// The integers remove what `golden` adds, within a few steps of 2^20.
     #[test]
     fn what_golden_adds_is_removed() {
-        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/small.toml");
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../golden/tests/designs/small.toml");
         for (columns, rows, share) in [(4, 3, 0.02), (10, 10, 0.0001), (2, 64, 0.1), (64, 5, 0.05)] {
             let mut design = Design::load(std::path::Path::new(file)).unwrap();
             (design.sensor.columns, design.sensor.rows, design.input.crosstalk) = (columns, rows, share);

@@ -10,6 +10,7 @@ use hdl_gen::emit::emit;
 use hdl_gen::emit::rtl::library;
 use hdl_gen::plan::Plan;
 
+use crate::support::designs::folders;
 use crate::support::{design_text, plan};
 
 /// Columns of a line, as in the project's own sources.
@@ -30,11 +31,11 @@ fn is_data(path: &str) -> bool {
 /// A calibration of each taxel.
 const GAINS: &str = "calibration = \"gains.csv\"\n";
 
-/// The designs that come with the project but the mat, whose text differs from theirs by widths only, and those that
+/// The shipped designs and those of the tests but the mat, whose text differs from theirs by widths only, and those that
 /// take ways of the templates which none of these takes.
 fn standing() -> Vec<Plan> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join("designs");
-    let mut files: Vec<_> = fs::read_dir(folder).expect("readable").map(|entry| entry.expect("there").path()).collect();
+    let entries = folders().into_iter().flat_map(|folder| fs::read_dir(folder).expect("readable"));
+    let mut files: Vec<_> = entries.map(|entry| entry.expect("there").path()).collect();
     files.retain(|file| file.extension().is_some_and(|ending| ending == "toml"));
     files.sort();
     assert!(files.len() > 20);

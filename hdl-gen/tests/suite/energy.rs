@@ -1,21 +1,14 @@
 //! The estimate of a frame's energy: what it counts.
 
-use std::path::Path;
-
-use golden::design::Design;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::energy::Energy;
 use hdl_gen::plan::savings::savings;
 
+use crate::support::designs::design;
 use crate::support::plan;
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace")
-}
-
 fn shipped(name: &str) -> Plan {
-    let path = root().join("designs").join(format!("{name}.toml"));
-    Plan::new(&Design::load(&path).expect("right")).expect("a plan")
+    Plan::new(&design(name)).expect("a plan")
 }
 
 /// By hand: what a multiplier and a memory do in an interval, at what they take.

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use golden::design::Design;
 use hdl_gen::cores::Multiplier;
 use hdl_gen::emit::rtl::library;
 use hdl_gen::emit::{FileMap, VERSION, emit};
 use hdl_gen::plan::Plan;
+
+use crate::support::designs::design;
 
 /// What writes the folder anew.
 const RENEW: &str = "UPDATE_EXPECTED=1 cargo test -p sptfra-hdl-gen --test suite expected::";
@@ -25,9 +26,7 @@ fn folder() -> PathBuf {
 }
 
 fn generated() -> FileMap {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let design = here.parent().expect("a workspace").join("designs/small.toml");
-    let mut files = emit(&Plan::new(&Design::load(&design).expect("right")).expect("a plan")).expect("emitted");
+    let mut files = emit(&Plan::new(&design("small")).expect("a plan")).expect("emitted");
     let copies: BTreeMap<String, String> = library(Multiplier::Whole)
         .into_iter()
         .map(|(module, text)| {

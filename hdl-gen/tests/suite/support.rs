@@ -1,5 +1,9 @@
 //! What several topics need: designs.
 
+#[allow(dead_code, reason = "shared with the tests of the other crates")]
+#[path = "../../../golden/tests/suite/designs.rs"]
+pub mod designs;
+
 use golden::design::Design;
 use hdl_gen::plan::Plan;
 use proptest::prelude::*;

@@ -6,6 +6,7 @@ use std::process::Command;
 
 use golden::design::Design;
 
+use crate::support::designs::design_file;
 use crate::support::{sptfra, workspace};
 
 /// What the page is asked once it is there; names of dots are shown while they are measured.
@@ -77,17 +78,10 @@ pub fn wrong(page: &str, folder: &Path, width: u32) -> Vec<String> {
 fn report(folder: &Path) -> String {
     let out = folder.join("out");
     let mut sweep = Command::new(sptfra());
-    let designs = [
-        "sensor1-fast",
-        "sensor1-reduced",
-        "sensor1-none",
-        "sensor1-wide",
-        "sensor2-reduced",
-        "sensor2-wide",
-        "sensor2-f3",
-    ];
+    let designs =
+        ["sensor1-fast", "sensor1-reduced", "paper", "sensor1-wide", "sensor2-reduced", "sensor2-wide", "sensor2-f3"];
     let scenes = ["sensor1-tilted", "two-contacts", "sensor2-held", "sensor2-punch"];
-    sweep.arg("sweep").args(designs.map(|name| workspace(&format!("designs/{name}.toml"))));
+    sweep.arg("sweep").args(designs.map(design_file));
     sweep.arg("--scene").args(scenes.map(|name| workspace(&format!("scenes/{name}.toml"))));
     sweep.args(["--kinds", "1"]);
     let output = sweep.arg("--out").arg(&out).output().expect("starts");

@@ -7,7 +7,7 @@ use hdl_gen::emit::emit;
 use hdl_gen::plan::Plan;
 use testbench::tools;
 
-use crate::support::{shipped, workspace};
+use crate::support::shipped;
 
 /// The device of the board in `hdl-gen/boards` that has one.
 const PART: &str = "xc7z020clg400-1";
@@ -66,7 +66,7 @@ fn a_longer_vector_takes_two_in_lanes_and_field() {
         assert_eq!((by_name(&short, name), by_name(&long, name)), (with_25, with_27), "{name}");
     }
     let mut design = long.design.clone();
-    design.hardware.part = Design::load(&workspace("designs/small-joint.toml")).expect("right").hardware.part;
+    design.hardware.part = shipped("small-joint").hardware.part;
     let newer = Plan::new(&design).expect("a plan");
     assert_eq!(newer.resources.dsp, newer.resources.multipliers);
     assert_eq!(newer.resources.multipliers, long.resources.multipliers);

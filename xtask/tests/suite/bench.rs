@@ -23,7 +23,7 @@ fn xtask(arguments: &[&str]) -> Output {
 
 fn small() -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace");
-    root.join("designs/small.toml").display().to_string()
+    root.join("golden/tests/designs/small.toml").display().to_string()
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::support::workspace;
 fn bench_measures_each_design() {
     let xtask =
         |arguments: &[&Path]| Command::new(env!("CARGO_BIN_EXE_xtask")).arg("solver").args(arguments).output().unwrap();
-    let designs = ["designs/small.toml", "designs/odd.toml"].map(workspace);
+    let designs = ["golden/tests/designs/small.toml", "golden/tests/designs/odd.toml"].map(workspace);
     let output = xtask(&[&designs[0], &designs[1], "--json".as_ref()]);
     assert!(output.status.success(), "{output:?}");
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();

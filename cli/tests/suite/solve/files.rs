@@ -24,7 +24,7 @@ fn bad_frames_get_one_message_and_no_output() {
     ] {
         let (folder, path) = folder_with(&frames);
         let out = folder.path().join("out.csv");
-        let design = workspace("designs/small.toml");
+        let design = workspace("golden/tests/designs/small.toml");
         let output = sptfra(&["solve", text(&design), "--frames", text(&path), "--out", text(&out)]);
         assert!(!output.status.success(), "{frames}");
         let said = String::from_utf8(output.stderr).unwrap();
@@ -41,7 +41,7 @@ fn bad_frames_get_one_message_and_no_output() {
 #[test]
 fn forces_go_to_a_pipe_or_a_device() {
     let (folder, frames) = folder_with(&row("-1000.5"));
-    let design = workspace("designs/small.toml");
+    let design = workspace("golden/tests/designs/small.toml");
     let solve = |out: &str| sptfra(&["solve", text(&design), "--frames", text(&frames), "--out", out]);
     let file = folder.path().join("forces.csv");
     assert!(solve(text(&file)).status.success());
@@ -87,7 +87,7 @@ fn frames_read_back_to_the_bit() {
 #[test]
 fn other_bad_input() {
     let (folder, frames) = folder_with(&row("-900"));
-    let design = workspace("designs/small.toml");
+    let design = workspace("golden/tests/designs/small.toml");
     let out = folder.path().join("out.csv");
     let nowhere = folder.path().join("no/such/out.csv");
     let reference = folder.path().join("reference.csv");
@@ -118,7 +118,7 @@ fn an_old_file_is_replaced_whole() {
     let (folder, frames) = folder_with(&row("-900"));
     let out = folder.path().join("out.csv");
     fs::write(&out, "old\n".repeat(1000)).unwrap();
-    let design = workspace("designs/small.toml");
+    let design = workspace("golden/tests/designs/small.toml");
     let output = sptfra(&["solve", text(&design), "--frames", text(&frames), "--out", text(&out)]);
     assert!(output.status.success());
     assert_eq!(fs::read_to_string(&out).unwrap().lines().count(), 2);
@@ -128,7 +128,7 @@ fn an_old_file_is_replaced_whole() {
 fn an_input_is_never_overwritten() {
     let (_folder, frames) = folder_with(&row("-900"));
     let before = fs::read(&frames).unwrap();
-    let design = workspace("designs/small.toml");
+    let design = workspace("golden/tests/designs/small.toml");
     let output = sptfra(&["solve", text(&design), "--frames", text(&frames), "--out", text(&frames)]);
     assert!(!output.status.success());
     let said = String::from_utf8(output.stderr).unwrap();
@@ -140,7 +140,7 @@ fn an_input_is_never_overwritten() {
 #[test]
 fn what_is_no_reference_is_refused() {
     let folder = TempDir::new().unwrap();
-    let design = workspace("designs/small.toml");
+    let design = workspace("golden/tests/designs/small.toml");
     let [frames, out] = ["frames.csv", "out.csv"].map(|name| folder.path().join(name));
     let made = sptfra(&["scene", "--design", text(&design), "--out", text(&frames)]);
     assert!(made.status.success(), "{made:?}");
@@ -173,7 +173,7 @@ fn what_is_no_reference_is_refused() {
 
 #[test]
 fn files_of_other_programs_get_a_word_of_what_to_do() {
-    let design = workspace("designs/small.toml");
+    let design = workspace("golden/tests/designs/small.toml");
     for (begin, part) in [
         (&b"PK\x03\x04"[..], "numpy.save(\"frames.npy\", numpy.load(\"frames.npz\")[\"NAME\"])"),
         (b"\x89HDF\r\n\x1a\n", "HDF5"),

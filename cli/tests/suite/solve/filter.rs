@@ -9,7 +9,7 @@ use crate::support::{program, sptfra, text, workspace};
 
 #[test]
 fn a_line_in_is_a_line_out_before_the_next_one() {
-    let design = workspace("designs/small.toml");
+    let design = workspace("golden/tests/designs/small.toml");
     let mut filter = program()
         .args(["solve", text(&design), "--frames", "-", "--out", "-", "--labels", "1"])
         .stdin(Stdio::piped())
@@ -46,7 +46,7 @@ fn a_line_in_is_a_line_out_before_the_next_one() {
 /// In kilopascals: after the first frames of a stream, and of a file before them.
 #[test]
 fn frames_that_look_wrong_are_told_of_on_the_way() {
-    let design = workspace("designs/small.toml");
+    let design = workspace("golden/tests/designs/small.toml");
     let frames: String = (0..40).map(|_| row("-1.0") + "\n").collect();
     let (_folder, file) = folder_with(&frames);
     for (from, piped) in [("-", Stdio::from(std::fs::File::open(&file).unwrap())), (text(&file), Stdio::null())] {
@@ -64,7 +64,7 @@ fn frames_that_look_wrong_are_told_of_on_the_way() {
 /// The numbers of columns above the frames are no frame; a note says so, once.
 #[test]
 fn numbers_of_columns_are_told_of() {
-    let design = workspace("designs/small.toml");
+    let design = workspace("golden/tests/designs/small.toml");
     let numbers: Vec<String> = (0..12).map(|number| number.to_string()).collect();
     let (_folder, file) = folder_with(&format!("{}\n{1}\n{1}\n", numbers.join(","), row("-1000.5")));
     for (from, piped) in [("-", Stdio::from(std::fs::File::open(&file).unwrap())), (text(&file), Stdio::null())] {
@@ -79,7 +79,7 @@ fn numbers_of_columns_are_told_of() {
 /// Who opens a port while a frame goes through it gets the end of one.
 #[test]
 fn a_first_line_that_is_cut_off_is_passed_over() {
-    let design = workspace("designs/small.toml");
+    let design = workspace("golden/tests/designs/small.toml");
     for (lines, good) in [
         (format!("3,-4.5\n{0}\n{0}\n", row("-1000.5")), true),
         (format!("0.5e,{0}\n{0}\n{0}\n", row("-1000.5")), true),
@@ -105,7 +105,7 @@ fn a_first_line_that_is_cut_off_is_passed_over() {
 
 #[test]
 fn a_file_goes_to_standard_output_as_to_a_file() {
-    let design = workspace("designs/small.toml");
+    let design = workspace("golden/tests/designs/small.toml");
     let (folder, frames) = folder_with(&format!("{}\n{}\n", row("-1000.0"), row("-10.5")));
     let forces = folder.path().join("forces.csv");
     let solve = |out: &str, more: &[&str]| {
@@ -126,7 +126,7 @@ fn a_file_goes_to_standard_output_as_to_a_file() {
 #[test]
 fn piped_frames_of_another_sensor_are_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let design = workspace("designs/small.toml");
+    let design = workspace("golden/tests/designs/small.toml");
     let wider = folder.path().join("wider.toml");
     let text_of = std::fs::read_to_string(&design).unwrap();
     let mut table = toml::from_str::<toml::Table>(&text_of).unwrap();
@@ -163,7 +163,7 @@ fn piped_frames_of_another_sensor_are_refused() {
 /// Frames of a scene, made and solved without a file.
 #[test]
 fn frames_of_a_scene_go_through_a_pipe() {
-    let design = workspace("designs/small.toml");
+    let design = workspace("golden/tests/designs/small.toml");
     let folder = tempfile::tempdir().unwrap();
     let made = folder.path().join("made.csv");
     assert!(sptfra(&["scene", "--design", text(&design), "--out", text(&made)]).status.success());

@@ -66,7 +66,10 @@ fn choose_then_solve() {
     for (arguments, part) in [
         (vec!["tune-filter", text(&design), "--out", text(&design)], "overwrite the input"),
         (vec!["tune-filter", text(&design), "--out", text(&again), "--csv", text(&again)], "two names"),
-        (vec!["tune-filter", text(&workspace("designs/small.toml")), "--out", text(&again)], "nothing to choose"),
+        (
+            vec!["tune-filter", text(&workspace("golden/tests/designs/small.toml")), "--out", text(&again)],
+            "nothing to choose",
+        ),
     ] {
         let output = sptfra(&arguments);
         assert!(!output.status.success(), "{arguments:?}");
@@ -81,9 +84,10 @@ fn a_choice_keeps_the_calibration() {
     let folder = TempDir::new().unwrap();
     let [design, gains, out] = ["pad.toml", "gains.csv", "out"].map(|name| folder.path().join(name));
     let scene = workspace("scenes/sensor1-hertz.toml");
-    let f3 = fs::read_to_string(workspace("designs/sensor1-f3.toml")).unwrap();
-    let start = f3.split("[algorithm.filter]").next().unwrap();
-    let start = start.replace("depth_mm = 3.0", "depth_mm = 3.0\npa_per_count = -0.5\ncalibration = \"gains.csv\"");
+    let paper = fs::read_to_string(workspace("designs/paper.toml")).unwrap();
+    let start = paper
+        .replace("filter = { kind = \"none\" }\n", "")
+        .replace("depth_mm = 3.0", "depth_mm = 3.0\npa_per_count = -0.5\ncalibration = \"gains.csv\"");
     fs::write(&design, format!("{start}[algorithm.filter]\nkind = \"f3\"\nscenes = [{:?}]\n", text(&scene))).unwrap();
     fs::write(&gains, "1.25,-3\n".repeat(100)).unwrap();
     fs::create_dir(&out).unwrap();
@@ -95,7 +99,7 @@ fn a_choice_keeps_the_calibration() {
         let [before, after] = [&design, &resolved].map(|path| golden::design::Design::load(path).unwrap());
         assert_eq!(before.input, after.input);
         // Scenes are in pascals: the counts change nothing of the choice.
-        let stored = golden::design::Design::load(&workspace("designs/sensor1-f3.toml")).unwrap();
+        let stored = golden::design::Design::load(&workspace("golden/tests/designs/sensor1-f3.toml")).unwrap();
         for name in golden::matrices::MatrixName::ALL {
             assert_eq!(after.algorithm.filter.of(name), stored.algorithm.filter.of(name));
         }

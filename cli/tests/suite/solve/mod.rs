@@ -58,7 +58,7 @@ fn scene_then_solve() {
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(said.contains("36 frames") && said.contains("f.forces.csv"), "{said}");
 
-    let design = workspace("designs/sensor1-none.toml");
+    let design = workspace("designs/paper.toml");
     let output = sptfra(&[
         "solve",
         text(&design),
@@ -115,7 +115,7 @@ fn scene_then_solve() {
 fn without_field_a_line_is_the_summary() {
     let (folder, frames) = folder_with(&format!("{}\n{}\n", row("-900"), row("0")));
     let out = folder.path().join("out.csv");
-    let design = workspace("designs/small.toml");
+    let design = workspace("golden/tests/designs/small.toml");
     let output = sptfra(&["solve", text(&design), "--frames", text(&frames), "--out", text(&out)]);
     assert!(output.status.success(), "{output:?}");
     let lines = fs::read_to_string(&out).unwrap();
@@ -137,7 +137,7 @@ fn the_scene_file_of_the_help_is_one() {
 fn a_recording_in_counts_with_labels() {
     let (folder, frames) = folder_with(&format!("name,no,{}\nlying,7,{}\n", row("r"), row("40")));
     let [design, forces] = ["pad.toml", "out.csv"].map(|name| folder.path().join(name));
-    let small = fs::read_to_string(workspace("designs/small.toml")).unwrap();
+    let small = fs::read_to_string(workspace("golden/tests/designs/small.toml")).unwrap();
     fs::write(&design, small.replace("depth_mm = 3.0", "depth_mm = 3.0\npa_per_count = -12.5")).unwrap();
     let solve = |labels| {
         sptfra(&["solve", text(&design), "--frames", text(&frames), "--labels", labels, "--out", text(&forces)])
@@ -194,7 +194,7 @@ fn frames_for_a_design_and_for_no_other() {
     let output = sptfra(&["scene", text(&scene), "--design", text(&pad), "--out", text(&frames)]);
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(said.contains("10 x 10 taxels of 4 x 2 mm") && said.contains("6 x 5 taxels of 4 x 4 mm"), "{said}");
-    let design = workspace("designs/sensor1-none.toml");
+    let design = workspace("designs/paper.toml");
     assert!(sptfra(&["scene", text(&scene), "--design", text(&design), "--out", text(&frames)]).status.success());
     let output = sptfra(&["scene", "--out", text(&frames)]);
     assert!(!output.status.success());
@@ -204,7 +204,7 @@ fn frames_for_a_design_and_for_no_other() {
 fn suspicious_frames_are_solved_with_a_warning_and_found_by_check() {
     let folder = TempDir::new().unwrap();
     let [frames, pulled, forces] = ["push.csv", "pulled.csv", "forces.csv"].map(|name| folder.path().join(name));
-    let design = workspace("designs/sensor1-none.toml");
+    let design = workspace("designs/paper.toml");
     assert!(sptfra(&["scene", "--design", text(&design), "--out", text(&frames)]).status.success());
     let check = |file: &Path, json: bool| {
         let arguments = ["check", text(&design), "--frames", text(file), "--json"];

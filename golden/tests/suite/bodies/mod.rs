@@ -4,6 +4,7 @@ mod clipped;
 mod kinds;
 mod tables;
 
+use crate::designs;
 use golden::bodies::Body;
 use golden::design::{Design, PlanKind, Slip};
 use golden::metrics::{BodyErrors, Quantiles};
@@ -32,8 +33,7 @@ fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
 }
 
 fn design(name: &str, contacts: usize) -> Design {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut design = Design::load(&folder.join(format!("../designs/{name}.toml"))).unwrap();
+    let mut design = designs::design(name);
     design.algorithm.contacts = contacts;
     design
 }

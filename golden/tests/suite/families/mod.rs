@@ -6,7 +6,7 @@ mod torque;
 
 use std::f64::consts::PI;
 
-use golden::design::Design;
+use crate::designs::design;
 use golden::scene::{Kind, SceneFrame, normal};
 use golden::solver::{Solver, Status};
 use rand::SeedableRng;
@@ -42,10 +42,6 @@ pub fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
 
 pub fn share(sorted: &[f64], share: f64) -> f64 {
     sorted[((sorted.len() as f64 * share).ceil() as usize).clamp(1, sorted.len()) - 1]
-}
-
-fn design(name: &str) -> Design {
-    Design::load(&std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../designs/{name}.toml"))).unwrap()
 }
 
 /// Adds noise of this share of each frame's largest stress.

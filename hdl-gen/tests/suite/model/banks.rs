@@ -2,7 +2,6 @@
 //! that was made with them.
 
 use std::collections::BTreeSet;
-use std::path::Path;
 
 use golden::design::{CalibrationIn, Design, Scaling};
 use golden::solver::Solver;
@@ -11,14 +10,14 @@ use hdl_gen::plan::Plan;
 use hdl_gen::plan::words::COUNTERS;
 
 use super::{Contact, frame};
+use crate::support::designs::design;
 
 const PA_PER_COUNT: f64 = -12.5;
 
 /// Both estimators, by either range.
 fn designs() -> Vec<Design> {
     let shipped = |name: &str| {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../designs/{name}.toml"));
-        let mut design = Design::load(&file).unwrap();
+        let mut design = design(name);
         design.input.pa_per_count = Some(PA_PER_COUNT);
         design.hardware.control = true;
         design.hardware.calibration = CalibrationIn::Ram;

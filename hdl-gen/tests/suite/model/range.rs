@@ -2,8 +2,6 @@
 
 #![allow(clippy::float_cmp)] // the same bits are meant
 
-use std::path::Path;
-
 use golden::design::{Design, Outputs, PlanKind, Scaling};
 use golden::metrics::field_error;
 use golden::solver::Solver;
@@ -13,12 +11,9 @@ use hdl_gen::plan::format::pow2;
 use hdl_gen::plan::words::{FORCE, MU, STANDARD_ERROR, SUMMARY_WORDS, TIMESTAMP};
 
 use super::{Contact, frame};
+use crate::support::designs::design as shipped;
 
 const CONTACT: Contact = Contact { centre: [0.43, 0.56], radius: 0.45, friction: 0.5, direction: 0.7, strength: 0.9 };
-
-fn shipped(name: &str) -> Design {
-    Design::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../designs/{name}.toml"))).unwrap()
-}
 
 fn scaled_by(range: Scaling, mut design: Design) -> Design {
     design.hardware.scaling = range;

@@ -1,14 +1,12 @@
 //! How busy the lanes are, and what more of them bring.
 
-use std::path::Path;
-
-use golden::design::{Design, MAX_LANES};
+use golden::design::MAX_LANES;
 use hdl_gen::estimators::Cells;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::product::{Coefficients, Epilogue};
 use hdl_gen::timing::Timeline;
 
-use crate::support::{design_text, plan, small_reduced};
+use crate::support::{design_text, designs, plan, small_reduced};
 
 #[test]
 fn dense_matrices_keep_all_lanes_busy() {
@@ -72,9 +70,8 @@ fn more_lanes_are_never_slower_on_the_papers_sensor() {
 /// sooner on average than the lanes have issued its products.
 #[test]
 fn no_interval_is_shorter_than_what_the_lanes_issue() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join("designs");
     for design in ["sensor1-fast", "sensor1-clipped-wide"] {
-        let mut design = Design::load(&folder.join(design).with_extension("toml")).expect("right");
+        let mut design = designs::design(design);
         for lanes in (16..=MAX_LANES).step_by(4) {
             design.hardware.lanes = lanes;
             let Timeline { interval_cycles, spmv_cycles, .. } = Plan::new(&design).expect("a plan").timeline;

@@ -78,12 +78,12 @@ mod tests {
 
     #[test]
     fn designs_that_answer_alike_are_one() {
-        let designs =
-            ["sensor1-fast", "sensor1-none", "sensor1-reduced", "sensor1-fast-100", "timing-joint", "sensor1-f2-p50"];
-        let designs = designs.map(|name| {
+        let designs = ["sensor1-fast", "paper", "sensor1-reduced", "sensor1-fast-100", "sensor1-fast-64", "paper"];
+        let mut designs = designs.map(|name| {
             let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs");
             Design::load(&folder.join(format!("{name}.toml"))).expect("a design")
         });
+        designs[5].algorithm.filter = Filter::F2 { p: 50.0 };
         let names: Vec<String> = distinct(&designs.each_ref()).iter().map(|design| design.name.clone()).collect();
         assert_eq!(names, ["sensor1_fast", "sensor1_reduced", "sensor1_fast_100"]);
     }

@@ -10,6 +10,7 @@ use golden::scene::{Scene, SceneFrame};
 use tempfile::TempDir;
 
 use super::{Line, commands, lines, lines_of};
+use crate::support::designs::design_file;
 use crate::support::workspace;
 
 /// What is not run here, by how the line begins, and why.
@@ -19,7 +20,7 @@ const ELSEWHERE: [(&str, &str); 29] = [
     ("export ", "of the shell that the next lines are typed into"),
     ("pip ", "topic python"),
     ("sptfra calibrate pressure_mat.toml", "minutes"),
-    ("sptfra run designs/small.toml --trace", "topic looking"),
+    ("sptfra run designs/small-control.toml --trace", "topic looking"),
     ("modprobe", "on a board, as root"),
     ("insmod", "likewise"),
     ("xmutil", "likewise"),
@@ -191,7 +192,7 @@ fn prepare(session: &Session) {
     fs::write(session.file("bladder.npy"), npy(&uniform)).expect("written");
     let column: String = pressures.iter().map(|pressure| format!("{pressure}\n")).collect();
     fs::write(session.file("p.csv"), format!("pressure (Pa)\n{column}")).expect("written");
-    fs::copy(workspace("designs/small-scanner.toml"), session.file("scanner.toml")).expect("copied");
+    fs::copy(design_file("small-scanner"), session.file("scanner.toml")).expect("copied");
     golden::frames::write_frames(&session.file("unloaded.csv"), &unloaded(12)).expect("written");
     // A board of one's own.
     fs::copy(workspace("hdl-gen/boards/zcu102.toml"), session.file("my-carrier.toml")).expect("copied");

@@ -12,7 +12,7 @@ use testbench::trial::model_answers;
 
 use super::{DRIVER, FORCES, MACHINE, SANITIZED, compile};
 use crate::docs::{commands, lines_of};
-use crate::support::{built, workspace};
+use crate::support::{built, shipped, workspace};
 
 const PAGE: &str = "docs/how-to/board.md";
 const DESIGN: &str = "designs/small-control.toml";
@@ -293,7 +293,7 @@ fn frames_come_as_fast_as_the_results_say() {
     assert!(made.status.success(), "{}", said(&made));
     let page = fs::read_to_string(workspace("results/frames-in-flight.csv")).expect("readable");
     for name in ["small-control", "sensor1-fast"] {
-        let mut design = Design::load(&workspace("designs").join(format!("{name}.toml"))).expect("right");
+        let mut design = shipped(name);
         design.hardware.control = true;
         let core = built(&Plan::new(&design).expect("a plan")).library;
         for software in [250, 1000] {

@@ -3,11 +3,11 @@
 use std::fs;
 use std::process::Command;
 
-use golden::design::Design;
 use hdl_gen::emit::emit;
 use hdl_gen::plan::Plan;
 
-use super::folder::{Folder, environment, run, workspace};
+use super::folder::{Folder, environment, run};
+use crate::support::shipped;
 
 /// Prints the attributes of `dut`: what the example takes for ports.
 const PORTS: &str = "import ast, sys
@@ -16,8 +16,8 @@ print(*{n.attr for n in nodes if isinstance(n, ast.Attribute) and isinstance(n.v
 
 #[test]
 fn it_is_python_and_drives_every_input() {
-    for design in ["small.toml", "small-control.toml", "small-scanner.toml"] {
-        let design = Design::load(&workspace().join("designs").join(design)).expect("a design");
+    for design in ["small", "small-control", "small-scanner"] {
+        let design = shipped(design);
         let files = emit(&Plan::new(&design).expect("can be planned")).expect("is printed");
         let text = |path: String| String::from_utf8(files[&path].clone()).expect("text");
         let (script, top) = (text(format!("sim/{}_cocotb.py", design.name)), text(format!("rtl/{}.v", design.name)));
@@ -52,8 +52,8 @@ fn it_runs_and_sees_a_wrong_word() {
     let python = environment().join("bin/python");
     let there = Command::new(&python).args(["-c", "import cocotb_tools.runner"]).output().expect("Python starts");
     assert!(there.status.success(), "cocotb is missing: run `make cocotb-tools`");
-    for (design, wrong) in [("small-control.toml", false), ("small.toml", false), ("small.toml", true)] {
-        let design = Design::load(&workspace().join("designs").join(design)).expect("a design");
+    for (design, wrong) in [("small-control", false), ("small", false), ("small", true)] {
+        let design = shipped(design);
         let folder = Folder::new(&emit(&Plan::new(&design).expect("can be planned")).expect("is printed"));
         let script = folder.design().join(format!("sim/{}_cocotb.py", design.name));
         if wrong {

@@ -4,18 +4,18 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::process::Command;
 
-use golden::design::Design;
 use hdl_gen::emit::{FileMap, emit};
 use hdl_gen::plan::Plan;
 use testbench::tools;
 
 use super::folder::{Folder, run, workspace, yaml};
+use crate::support::shipped;
 
 const NAME: &str = "small_control";
 
 /// The small design with a register bank.
 pub fn control() -> FileMap {
-    let design = Design::load(&workspace().join("designs/small-control.toml")).expect("is right");
+    let design = shipped("small-control");
     emit(&Plan::new(&design).expect("can be planned")).expect("is printed")
 }
 

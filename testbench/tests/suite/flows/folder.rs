@@ -20,7 +20,7 @@ pub fn workspace() -> PathBuf {
 
 /// The small design's files, for the part given or its own.
 pub fn files(part: Option<&str>) -> FileMap {
-    let path = workspace().join("designs/small.toml");
+    let path = workspace().join("golden/tests/designs/small.toml");
     let text = fs::read_to_string(path).expect("the design is there");
     let text = part.map_or(text.clone(), |part| text.replace("xczu9eg-ffvb1156-2-e", part));
     let design = Design::from_toml(&text, "small.toml").expect("is right");

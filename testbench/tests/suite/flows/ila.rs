@@ -2,11 +2,11 @@
 
 use std::fs;
 
-use golden::design::Design;
 use hdl_gen::emit::{FileMap, Options, emit_for};
 use hdl_gen::plan::Plan;
 
-use super::folder::{Folder, Ran, workspace};
+use super::folder::{Folder, Ran};
+use crate::support::shipped;
 
 const SYSTEM: &str = "vivado/block_design.tcl";
 const ANALYSER: &str = "vivado/ila.tcl";
@@ -14,7 +14,7 @@ const MARK: &str = "    (* mark_debug = \"true\" *)\n";
 
 /// The files of a design with marked nets.
 fn marked(design: &str) -> FileMap {
-    let design = Design::load(&workspace().join("designs").join(design)).expect("a design");
+    let design = shipped(design);
     let plan = Plan::new(&design).expect("can be planned");
     emit_for(&plan, &Options { debug: true, ..Options::default() }).expect("is printed")
 }
@@ -22,7 +22,7 @@ fn marked(design: &str) -> FileMap {
 #[test]
 fn every_kind_of_core_has_the_nets() {
     // Of taxels by themselves there is one kind of result less, of classes without a field two.
-    let designs = ["small.toml", "small-scanner.toml", "odd.toml", "sensor1-fast.toml", "sensor1-f1-l40.toml"];
+    let designs = ["small", "small-scanner", "odd", "sensor1-fast", "sensor1-f1-l40"];
     for (design, nets) in designs.into_iter().zip([20, 18, 19, 20, 19]) {
         let files = marked(design);
         let marks = files.values().map(|text| String::from_utf8_lossy(text).matches(MARK).count()).sum::<usize>();
@@ -47,8 +47,8 @@ fn implemented(folder: &Folder, environment: &[(&str, &str)]) -> Ran {
 #[test]
 fn every_marked_net_has_a_probe_in_the_clock_of_the_core() {
     for (design, core, within) in [
-        ("small.toml", "rtl/small_4x3.v", "system_i/core/inst/"),
-        ("small-control.toml", "rtl/small_control_core.v", "system_i/core/inst/core/"),
+        ("small", "rtl/small_4x3.v", "system_i/core/inst/"),
+        ("small-control", "rtl/small_control_core.v", "system_i/core/inst/core/"),
     ] {
         let files = marked(design);
         let verilog = std::str::from_utf8(&files[core]).expect("text");
@@ -75,7 +75,7 @@ fn every_marked_net_has_a_probe_in_the_clock_of_the_core() {
         // The lowest bit of the words is the probe's lowest.
         let words = of_probes.iter().find(|call| call.contains("out_tdata")).expect("words");
         assert!(words.find("out_tdata[0]") < words.find("out_tdata[31]"), "{words}");
-        let board = if design == "small.toml" { "small_4x3_zcu102" } else { "small_control_zcu102" };
+        let board = if design == "small" { "small_4x3_zcu102" } else { "small_control_zcu102" };
         assert!(folder.work().join(format!("{board}.ltx")).exists());
     }
 }
@@ -88,7 +88,7 @@ fn a_design_without_it_has_neither_script_nor_mark() {
     assert!(!ran.calls.iter().any(|call| call.contains("debug")));
     assert!(!folder.work().join("small_4x3_zcu102.ltx").exists());
     // The hash apart, marks and what attaches the analyser are all that differs.
-    let files = marked("small.toml");
+    let files = marked("small");
     let bare = std::str::from_utf8(&files["rtl/small_4x3.v"]).expect("text").replace(MARK, "");
     let lines = |text: &str| text.lines().skip(3).map(str::to_owned).collect::<Vec<_>>();
     assert_eq!(lines(&bare), lines(&folder.read("rtl/small_4x3.v")));
@@ -96,7 +96,7 @@ fn a_design_without_it_has_neither_script_nor_mark() {
 
 #[test]
 fn broken_copies_are_refused() {
-    let files = marked("small.toml");
+    let files = marked("small");
     for (path, right, wrong, message) in [
         (
             "rtl/small_4x3.v",

@@ -3,12 +3,12 @@
 use std::fs;
 use std::process::Command;
 
-use golden::design::Design;
 use hdl_gen::emit::{FileMap, emit};
 use hdl_gen::plan::Plan;
 
 use super::control::control;
-use super::folder::{Folder, Ran, files, run, workspace};
+use super::folder::{Folder, Ran, files, run};
+use crate::support::shipped;
 
 /// What an overlay refers to, and no more: the labels of `zynqmp.dtsi` with `zynqmp-clk-ccf.dtsi`, of `zynq-7000.dtsi`.
 fn base(cells: usize, interrupts: &str, clocks: &str) -> String {
@@ -56,7 +56,7 @@ fn has_node(folder: &Folder, node: &str) -> bool {
 }
 
 fn control_on(part: &str) -> FileMap {
-    let mut design = Design::load(&workspace().join("designs/small-control.toml")).expect("is right");
+    let mut design = shipped("small-control");
     part.clone_into(&mut design.hardware.part);
     emit(&Plan::new(&design).expect("can be planned")).expect("is printed")
 }

@@ -2,12 +2,12 @@
 
 use std::fs;
 
-use golden::design::Design;
 use golden::progress::Progress;
 use testbench::frame_set::FrameSet;
 use testbench::run::{self, Options};
 
-use super::folder::{Folder, NAME, Ran, workspace};
+use super::folder::{Folder, NAME, Ran};
+use crate::support::shipped;
 
 const POWER: &str = "vivado/power.tcl";
 
@@ -46,7 +46,7 @@ fn estimated(activity: &str) -> Ran {
 
 #[test]
 fn simulated_activity_becomes_watts_and_energy() {
-    let design = Design::load(&workspace().join("designs/small.toml")).expect("a design");
+    let design = shipped("small");
     let mut frames = FrameSet::standing(&design.sensor).expect("frames");
     frames.stress.truncate(3);
     frames.truth = None;

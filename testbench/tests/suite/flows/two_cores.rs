@@ -11,7 +11,7 @@ use super::folder::{Folder, NAME, Ran, files, run, workspace};
 
 /// The small design under another name, with a prefix or none.
 fn other(prefix: Option<&str>) -> FileMap {
-    let text = fs::read_to_string(workspace().join("designs/small.toml")).expect("the design is there");
+    let text = fs::read_to_string(workspace().join("golden/tests/designs/small.toml")).expect("the design is there");
     let design = Design::from_toml(&text.replace(NAME, "other_4x3"), "other.toml").expect("is right");
     let prefix = prefix.map(|prefix| prefix.parse().expect("a prefix"));
     emit_for(&Plan::new(&design).expect("can be planned"), &Options { prefix, ..Options::default() })

@@ -32,7 +32,7 @@ fn its_steps_generate_lint_and_simulate_a_design() {
     symlink(target, generator.join("target")).expect("can be linked");
     symlink(environment(), generator.join(".venv")).expect("can be linked");
     let design = workflow["env"]["DESIGN"].as_str().expect("a design");
-    fs::copy(workspace().join("designs/small.toml"), place.path().join(design)).expect("can be copied");
+    fs::copy(workspace().join("golden/tests/designs/small.toml"), place.path().join(design)).expect("can be copied");
 
     let mut taken = Vec::new();
     for step in workflow["jobs"]["hardware"]["steps"].as_array().expect("steps") {

@@ -1,6 +1,9 @@
 //! Designs for tests of the emitted RTL: planned, built through the shared cache, simulated, judged.
 
 pub mod calibrated;
+#[allow(dead_code, reason = "shared with the tests of the other crates")]
+#[path = "../../../../golden/tests/suite/designs.rs"]
+pub mod designs;
 #[path = "../../../../golden/tests/suite/effort.rs"]
 pub mod effort;
 pub mod faults;
@@ -14,6 +17,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
+pub use designs::design as shipped;
 use golden::design::{Correction, Design, Estimator, Outputs, PlanKind, StandardError};
 use hdl_gen::plan::Plan;
 use testbench::simulate::Simulation;
@@ -60,11 +64,6 @@ pub fn sptfra() -> PathBuf {
         folder.join("sptfra")
     };
     PROGRAM.get_or_init(build).clone()
-}
-
-/// One of the designs that come with the project, by its file name without the ending.
-pub fn shipped(file: &str) -> Design {
-    Design::load(&workspace(&format!("designs/{file}.toml"))).expect("a good design")
 }
 
 /// The design under another name and with another number of lanes.

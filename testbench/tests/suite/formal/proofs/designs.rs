@@ -1,4 +1,4 @@
-//! The designs that are proved: the 4 × 3 one of `designs/small.toml`, changed.
+//! The designs that are proved: the 4 × 3 one of `golden/tests/designs/small.toml`, changed.
 
 use golden::design::{CalibrationIn, Correction, Design, Estimator, Optimise, Outputs, Overrun, PlanKind, Scaling};
 
