@@ -46,3 +46,10 @@ pub fn design_text(name: &str, size: [usize; 2], pitch_mm: [f64; 2], depth_mm: f
         size[0], size[1]
     )
 }
+
+/// Whether nothing was said but how far long work has come, which is logged every ten seconds.
+pub fn only_progress(stderr: &[u8]) -> bool {
+    let line =
+        |line: &str| line.strip_suffix(" s").is_some_and(|line| line.ends_with(|last: char| last.is_ascii_digit()));
+    String::from_utf8_lossy(stderr).lines().all(line)
+}
