@@ -1,8 +1,8 @@
 //! Force files: CSV with a header line, one frame a line, or `NumPy`'s `.npy` where the name ends so.
 //!
 //! [`columns`] names the values of a line, [`row`] and [`reference_row`] have them: the status word, the resultants and
-//! what follows from them, the records and torques of bodies where there may be several, and, where asked for, `f_x, f_y, f_z` in
-//! newtons for each taxel in turn. A file without a header, or with the first eight columns alone, is read too.
+//! what follows from them, the records and torques of contacts where there may be several. Where asked for, `f_x, f_y, f_z`
+//! in newtons of each taxel follow. A file without a header, or with the first eight columns alone, is read too.
 
 use std::path::{Path, PathBuf};
 
@@ -18,19 +18,22 @@ use crate::solver::{Solution, Status};
 
 /// Values on a line that a reader needs.
 const NEEDED: usize = 8;
-/// The columns before those of bodies and taxels: the status is a word of bits; forces are in newtons, torques in N m,
+/// How the columns of a contact begin, before its number from 1.
+const CONTACT: &str = "contact";
+/// The columns before those of contacts and taxels: the status is a word of bits; forces are in newtons, torques in N m,
 /// `phi` in radians.
 const SUMMARY: [&str; 13] =
-    ["status", "F_x", "F_y", "F_z", "mu", "phi", "mu_x", "mu_y", "T_x", "T_y", "T_z", "standard_error", "bodies"];
+    ["status", "F_x", "F_y", "F_z", "mu", "phi", "mu_x", "mu_y", "T_x", "T_y", "T_z", "standard_error", "contacts"];
 
-/// The columns of each body: a word of bits as above, its centre in metres from the first taxel.
-pub const OF_BODY: [&str; 9] = ["taxels", "status", "x", "y", "F_x", "F_y", "F_z", "mu", "standard_error"];
-/// Behind those of all bodies each one's torque, in N m as the frame's.
-pub const TORQUE_OF_BODY: [&str; 3] = ["T_x", "T_y", "T_z"];
+/// The columns of each contact, as in `contact1_taxels`: a word of bits as above, its centre in metres from the first
+/// taxel.
+pub const OF_CONTACT: [&str; 9] = ["taxels", "status", "x", "y", "F_x", "F_y", "F_z", "mu", "standard_error"];
+/// Behind those of all contacts each one's torque, in N m as the frame's.
+pub const TORQUE_OF_CONTACT: [&str; 3] = ["T_x", "T_y", "T_z"];
 
 /// A column with its unit, as a header has it: `F_x (N)`; the status, numbers of things and friction have none.
 fn with_unit(name: String) -> String {
-    let owned = name.split_once('_').filter(|(owner, _)| owner.starts_with("body") || owner.starts_with("taxel"));
+    let owned = name.split_once('_').filter(|(owner, _)| owner.starts_with(CONTACT) || owner.starts_with("taxel"));
     let unit = match owned.map_or(&*name, |(_, quantity)| quantity) {
         "phi" => "rad",
         "x" | "y" => "m",
@@ -42,25 +45,25 @@ fn with_unit(name: String) -> String {
     format!("{name} ({unit})")
 }
 
-/// The names of the columns, with units, of a file with so many records of bodies and the forces of so many taxels.
+/// The names of the columns, with units, of a file with so many records of contacts and the forces of so many taxels.
 pub fn columns(records: usize, taxels: usize) -> Vec<String> {
     let summary = SUMMARY.into_iter().map(str::to_owned);
-    let of_body = |body, names: &[&str]| names.iter().map(|name| format!("body{body}_{name}")).collect::<Vec<_>>();
-    let summary = summary.chain((0..records).flat_map(|body| of_body(body, &OF_BODY)));
-    let summary = summary.chain((0..records).flat_map(|body| of_body(body, &TORQUE_OF_BODY)));
+    let of = |number, names: &[&str]| names.iter().map(|name| format!("{CONTACT}{number}_{name}")).collect::<Vec<_>>();
+    let summary = summary.chain((1..=records).flat_map(|number| of(number, &OF_CONTACT)));
+    let summary = summary.chain((1..=records).flat_map(|number| of(number, &TORQUE_OF_CONTACT)));
     summary
         .chain((0..taxels).flat_map(|taxel| ["x", "y", "z"].map(|axis| format!("taxel{taxel}_f_{axis}"))))
         .map(with_unit)
         .collect()
 }
 
-/// A body as its columns, but for the torque.
+/// A contact as its columns, but for the torque.
 pub fn record(body: &Body) -> [f64; 9] {
     let Body { taxels, status, centre_m: [x, y], force: [fx, fy, fz], mu, standard_error, .. } = *body;
     [taxels as f64, f64::from(status.0), x, y, fx, fy, fz, mu, standard_error]
 }
 
-/// A solution as a line, with its records of bodies, and with the force field of each taxel if `with_field`.
+/// A solution as a line, with its records of contacts, and with the force field of each taxel if `with_field`.
 pub fn row(solution: &Solution, with_field: bool) -> Vec<f64> {
     let [fx, fy, fz] = solution.resultant;
     let [tx, ty, tz] = solution.torque;
@@ -72,12 +75,12 @@ pub fn row(solution: &Solution, with_field: bool) -> Vec<f64> {
     std::iter::once(f64::from(status.0)).chain(summary).chain(bodies).chain(field).collect()
 }
 
-/// Bodies as their columns: all records, then all torques.
+/// Contacts as their columns: all records, then all torques.
 fn of_bodies(bodies: &[Body]) -> impl Iterator<Item = f64> {
     bodies.iter().flat_map(record).chain(bodies.iter().flat_map(|body| body.torque))
 }
 
-/// The truth of a scene's frame in the form of a solution with status 0, with a record of each body if there are several.
+/// The truth of a scene's frame in the form of a solution with status 0, with a record of each contact if there are several.
 pub fn reference_row(frame: &SceneFrame) -> Vec<f64> {
     let ([fx, fy, fz], [tx, ty, tz]) = (frame.force, frame.torque);
     let normal = fz.abs();
@@ -88,7 +91,7 @@ pub fn reference_row(frame: &SceneFrame) -> Vec<f64> {
     row
 }
 
-/// Records of a scene's frame: one of each body, and none of a single one.
+/// Records of a scene's frame: one of each contact, and none of a single one.
 fn records_of(frame: &SceneFrame) -> usize {
     if frame.bodies.len() > 1 { frame.bodies.len() } else { 0 }
 }
@@ -189,33 +192,33 @@ fn measured_outcomes(path: &Path, frames: usize, measured: &Measured) -> Result<
     measured.forces.iter().enumerate().map(outcome).collect()
 }
 
-/// Reads the bodies of a force file of `frames` lines, of each line those that there are. Nothing if the file does not tell
-/// them apart: it has no records, and more bodies than one.
+/// Reads the contacts of a force file of `frames` lines, of each line those that there are. Nothing if the file does not
+/// separate them: it has no records, and more contacts than one.
 ///
 /// In a file of text the names of the columns say how many records there are; a `.npy` file has no field then. A file without
-/// the torque of each body is read too.
+/// the torque of each contact is read too.
 ///
 /// # Errors
 ///
 /// As [`read_outcomes`].
-pub fn read_bodies(path: &Path, frames: usize, sensor: &Sensor) -> Result<Option<Vec<Vec<Body>>>, FrameError> {
+pub fn read_contacts(path: &Path, frames: usize, sensor: &Sensor) -> Result<Option<Vec<Vec<Body>>>, FrameError> {
     let rows = read_rows(path, frames)?;
     let (records, torques) = if let Some(line) = frames::first_line(path)? {
-        let count = |of: &str| line.split([',', ';', '\t', ' ']).filter(|name| is_body_column(name, of)).count();
+        let count = |of: &str| line.split([',', ';', '\t', ' ']).filter(|name| is_contact_column(name, of)).count();
         (count("_F_z"), count("_T_z"))
     } else {
         let more = rows.first().map_or(0, |row| row.len().saturating_sub(SUMMARY.len()));
-        let all = OF_BODY.len() + TORQUE_OF_BODY.len();
-        match [more / all, more / OF_BODY.len()] {
+        let all = OF_CONTACT.len() + TORQUE_OF_CONTACT.len();
+        match [more / all, more / OF_CONTACT.len()] {
             [records, _] if more == records * all && records <= MOST => (records, records),
-            [_, records] if more == records * OF_BODY.len() && records <= MOST => (records, 0),
+            [_, records] if more == records * OF_CONTACT.len() && records <= MOST => (records, 0),
             _ => (0, 0),
         }
     };
     let bodies = |row: &Vec<f64>| match row.get(SUMMARY.len()..) {
         Some(rest) if records > 0 => {
             let mut bodies: Vec<Body> = rest.as_chunks::<9>().0.iter().take(records).map(body).collect();
-            let behind = rest.get(records * OF_BODY.len()..).unwrap_or_default();
+            let behind = rest.get(records * OF_CONTACT.len()..).unwrap_or_default();
             for (body, torque) in bodies.iter_mut().zip(behind.as_chunks::<3>().0.iter().take(torques)) {
                 body.torque = *torque;
             }
@@ -232,12 +235,12 @@ pub fn read_bodies(path: &Path, frames: usize, sensor: &Sensor) -> Result<Option
     Ok(rows.iter().map(bodies).collect())
 }
 
-/// Whether a column has this of a body, such as `_F_z`.
-fn is_body_column(name: &str, of: &str) -> bool {
-    name.trim().strip_prefix("body").and_then(|rest| rest.strip_suffix(of)).is_some()
+/// Whether a column has this of a contact, such as `_F_z`.
+fn is_contact_column(name: &str, of: &str) -> bool {
+    name.trim().strip_prefix(CONTACT).and_then(|rest| rest.strip_suffix(of)).is_some()
 }
 
-/// The body of a record's columns.
+/// The contact of a record's columns.
 fn body(&[taxels, status, x, y, fx, fy, fz, mu, standard_error]: &[f64; 9]) -> Body {
     let (taxels, status) = (taxels as usize, Status(status as u32));
     Body { taxels, status, centre_m: [x, y], force: [fx, fy, fz], mu, standard_error, ..Body::default() }

@@ -18,7 +18,7 @@ from importlib.metadata import version as _version
 from ._native import Average, Design, Error, FrameLines, Solver, beyond, calibrate, check, errors, load_frames, rest, scene
 from .forces import Forces, Status
 from .hardware import generate, plan, simulate
-from .plot import plot_bodies, plot_field
+from .plot import plot_contacts, plot_field
 from .recorded import calibrate_forces, calibrate_uniform
 from .results import Beyond, Finding, Plan, Recorded, Rest, Scene, Simulation, Spread
 
@@ -51,7 +51,7 @@ __all__ = [
     "generate",
     "load_frames",
     "plan",
-    "plot_bodies",
+    "plot_contacts",
     "plot_field",
     "rest",
     "scene",

@@ -30,8 +30,8 @@ class Status(enum.IntFlag):
     DROPPED = 4096
 
 
-#: What is known of a body, by the names that force files have for it.
-BODY = {name: np.uint16 if name in ("taxels", "status") else np.float64 for name in
+#: What is known of a contact, by the names that force files have for it.
+CONTACT = {name: np.uint16 if name in ("taxels", "status") else np.float64 for name in
         "taxels status x y F_x F_y F_z mu standard_error T_x T_y T_z".split()}
 
 #: Names with a unit, by unit.
@@ -40,7 +40,7 @@ _NAMES = {
     "N m": "torque T_x T_y T_z",
     "rad": "direction phi",
     "m": "x y",
-    "": "status friction mu friction_xy mu_x mu_y bodies contacts taxels",
+    "": "status friction mu friction_xy mu_x mu_y contacts taxels",
 }
 _UNITS = MappingProxyType({name: unit for unit, names in _NAMES.items() for name in names.split()})
 
@@ -69,7 +69,7 @@ class Forces:
     #: (n,) uint8: contacts; at most 1 in a design that neither counts nor separates them.
     contacts: np.ndarray
     #: (n, contacts) structured: `taxels`, `status`, `x`, `y` in m from the first taxel, `F_x`, `F_y`, `F_z` in N, `mu`,
-    #: `standard_error`, `T_x`, `T_y`, `T_z` in N m of each body, the one that presses most first, then zeros;
+    #: `standard_error`, `T_x`, `T_y`, `T_z` in N m of each contact, the one that presses most first, then zeros;
     #: None where only one is known, as of hardware, which does not separate contacts.
     records: np.ndarray | None
     #: (n, rows, columns, 3): f_x, f_y, f_z of each taxel in N; None where only resultants are known.
@@ -102,16 +102,16 @@ class Forces:
 
     def table(self) -> np.ndarray:
         """(n,) structured array with the columns of a force file, without the field."""
-        names = "status F_x F_y F_z mu phi mu_x mu_y T_x T_y T_z standard_error bodies".split()
+        names = "status F_x F_y F_z mu phi mu_x mu_y T_x T_y T_z standard_error contacts".split()
         columns = [self.status, *self.resultant.T, self.friction, self.direction, *self.friction_xy.T, *self.torque.T]
         columns += [self.standard_error, self.contacts]
         if self.records is not None:
-            # As in a force file, the torques behind the records of all bodies.
+            # As in a force file, the torques behind the records of all contacts.
             for behind in (False, True):
-                of_body = [name for name in BODY if name.startswith("T_") == behind]
-                for body in range(self.records.shape[1]):
-                    names += [f"body{body}_{name}" for name in of_body]
-                    columns += [self.records[name][:, body] for name in of_body]
+                of_contact = [name for name in CONTACT if name.startswith("T_") == behind]
+                for contact in range(self.records.shape[1]):
+                    names += [f"contact{contact + 1}_{name}" for name in of_contact]
+                    columns += [self.records[name][:, contact] for name in of_contact]
         table = np.empty(len(self), dtype=[(name, column.dtype) for name, column in zip(names, columns)])
         for name, column in zip(names, columns):
             table[name] = column
@@ -119,8 +119,8 @@ class Forces:
 
 
 def _records(values: np.ndarray) -> np.ndarray:
-    """Structured records of (n, contacts, len(BODY)) numbers."""
-    records = np.empty(values.shape[:2], dtype=list(BODY.items()))
-    for index, name in enumerate(BODY):
+    """Structured records of (n, contacts, len(CONTACT)) numbers."""
+    records = np.empty(values.shape[:2], dtype=list(CONTACT.items()))
+    for index, name in enumerate(CONTACT):
         records[name] = values[..., index]
     return records

@@ -61,12 +61,12 @@ def plot_field(design: Design, forces: Forces, index: int = 0, ax: Any = None) -
     return ax
 
 
-def plot_bodies(design: Design, forces: Forces, index: int = 0, ax: Any = None) -> Any:
-    """Draws the bodies of a frame on the grid in millimetres, of a design with `contacts` of 2 or more.
+def plot_contacts(design: Design, forces: Forces, index: int = 0, ax: Any = None) -> Any:
+    """Draws the contacts of a frame on the grid in millimetres, of a design with `contacts` of 2 or more.
 
-    A dot is a body's centre, as wide as its normal force is large, an arrow its tangential force; the circle around the
+    A dot is a contact's centre, as wide as its normal force is large, an arrow its tangential force; the circle around the
     arrow's tip is its standard error, where the design tells one. Returns the matplotlib axes, `ax` if given. Raises
-    `ImportError` without matplotlib and `ValueError` where no bodies are known or there is no such frame.
+    `ImportError` without matplotlib and `ValueError` where no contacts are known or there is no such frame.
     """
     plt = pyplot()
     if forces.records is None:
@@ -78,23 +78,27 @@ def plot_bodies(design: Design, forces: Forces, index: int = 0, ax: Any = None) 
         _, ax = plt.subplots()
     left, right, low, high = _edges(design)
     ax.add_patch(plt.Rectangle((left, low), right - left, high - low, fill=False, edgecolor="0.6"))
-    bodies = forces.records[index]
+    contacts = forces.records[index]
     # What is true of a scene is known of no taxels.
-    bodies = bodies[bodies["F_z"] != 0.0]
-    largest = float(np.abs(bodies["F_z"]).max(initial=0.0)) or 1.0
+    contacts = contacts[contacts["F_z"] != 0.0]
+    largest = float(np.abs(contacts["F_z"]).max(initial=0.0)) or 1.0
     # The longest arrow is a third of the grid's shorter side.
-    longest = float(np.hypot(bodies["F_x"], bodies["F_y"]).max(initial=0.0)) or 1.0
+    longest = float(np.hypot(contacts["F_x"], contacts["F_y"]).max(initial=0.0)) or 1.0
     scale = min(right - left, high - low) / (3.0 * longest)
-    for number, body in enumerate(bodies):
-        x, y = 1e3 * body["x"], 1e3 * body["y"]
-        tip = (x + scale * body["F_x"], y + scale * body["F_y"])
+    for number, contact in enumerate(contacts):
+        x, y = 1e3 * contact["x"], 1e3 * contact["y"]
+        tip = (x + scale * contact["F_x"], y + scale * contact["F_y"])
         colour = f"C{number}"
-        ax.scatter([x], [y], s=200.0 * abs(body["F_z"]) / largest, color=colour, alpha=0.6)
+        ax.scatter([x], [y], s=200.0 * abs(contact["F_z"]) / largest, color=colour, alpha=0.6)
         ax.annotate("", tip, (x, y), arrowprops={"arrowstyle": "->", "color": colour, "shrinkA": 0, "shrinkB": 0})
-        if body["standard_error"] > 0.0:
-            ax.add_patch(plt.Circle(tip, scale * body["standard_error"], fill=False, edgecolor=colour, linestyle=":"))
+        if contact["standard_error"] > 0.0:
+            ax.add_patch(plt.Circle(tip, scale * contact["standard_error"], fill=False, edgecolor=colour, linestyle=":"))
         ax.annotate(
-            f"{abs(body['F_z']):.2f} N, µ {body['mu']:.2f}", (x, y), (6, -14), textcoords="offset points", fontsize="small"
+            f"{abs(contact['F_z']):.2f} N, µ {contact['mu']:.2f}",
+            (x, y),
+            (6, -14),
+            textcoords="offset points",
+            fontsize="small",
         )
     ax.set(xlim=(left, right), ylim=(low, high))
     _label(ax, forces, index)

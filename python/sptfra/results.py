@@ -17,7 +17,7 @@ from .forces import Forces
 class Finding(NamedTuple):
     """One thing that is suspicious in frames, with its likely cause and what to change."""
 
-    #: What it is about: empty, rest, range, sign, no_tension, tension, tare, dead, order, stuck, scaled or bodies
+    #: What it is about: empty, rest, range, sign, no_tension, tension, tare, dead, order, stuck, scaled or contacts
     #: (`docs/reference/status-bits.md`).
     kind: str
     message: str

@@ -237,7 +237,7 @@ impl Forces {
         if self.of_frame > 0 {
             let of_body = |body| golden::forces::record(body).into_iter().chain(body.torque);
             let values: Vec<f64> = self.records.iter().flat_map(of_body).collect();
-            let each = golden::forces::OF_BODY.len() + golden::forces::TORQUE_OF_BODY.len();
+            let each = golden::forces::OF_CONTACT.len() + golden::forces::TORQUE_OF_CONTACT.len();
             let values = array(py, values, &[frames, self.of_frame, each])?;
             kwargs.set_item("records", py.import("sptfra.forces")?.getattr("_records")?.call1((values,))?)?;
         } else {

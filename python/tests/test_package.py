@@ -107,15 +107,15 @@ class Package(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "there is no frame 36 of 36"):
             sptfra.plot_field(design(), forces, 36)
         with self.assertRaisesRegex(ValueError, "contacts = 2"):
-            sptfra.plot_bodies(design(), forces)
+            sptfra.plot_contacts(design(), forces)
         pad = sptfra.Design.load(ROOT / "designs" / "sensor1-fast.toml")
         truth = sptfra.scene(path=ROOT / "scenes" / "two-contacts.toml").truth
-        axes = sptfra.plot_bodies(pad, truth)
+        axes = sptfra.plot_contacts(pad, truth)
         centres = [tuple(map(float, dots.get_offsets()[0])) for dots in axes.collections]
         np.testing.assert_allclose(centres, [(10.0, 6.0), (27.0, 12.0)])
         self.assertIn("3.00 N, µ 0.40", [text.get_text() for text in axes.texts])
         with self.assertRaisesRegex(ValueError, "there is no frame 1 of 1"):
-            sptfra.plot_bodies(pad, truth, 1)
+            sptfra.plot_contacts(pad, truth, 1)
         # The window of a stream, on a display that draws into memory.
         lines = [",".join(map(repr, frame.ravel().tolist())).encode() for frame in sptfra.scene(design()).frames[:3]]
         window = live.Window(design())

@@ -118,8 +118,8 @@ class Solving(unittest.TestCase):
     def test_each_name_has_a_unit(self):
         forces = sptfra.Solver(design()).solve(sptfra.scene(design()).frames)
         arrays = {field.name for field in dataclasses.fields(forces)} - {"records"} | {"mu", "phi"}
-        bodies = {"taxels", "status", "x", "y", "F_x", "F_y", "F_z", "mu", "standard_error"}
-        self.assertEqual((arrays | set(forces.table().dtype.names) | bodies) - set(sptfra.Forces.UNITS), set())
+        records = {"taxels", "status", "x", "y", "F_x", "F_y", "F_z", "mu", "standard_error"}
+        self.assertEqual((arrays | set(forces.table().dtype.names) | records) - set(sptfra.Forces.UNITS), set())
         units = [sptfra.Forces.UNITS[name] for name in ("resultant", "T_z", "phi", "x", "status")]
         self.assertEqual(units, ["N", "N m", "rad", "m", ""])
         with self.assertRaises(TypeError):
@@ -184,7 +184,7 @@ class Solving(unittest.TestCase):
         fields = [f"    {name}: np.ndarray" for name in known]
         self.assertEqual([field for field in fields if field not in driver], [])
 
-    def test_bodies_have_records(self):
+    def test_contacts_have_records(self):
         self.assertIsNone(self.solver.solve(self.frames).records)
         scene = sptfra.scene(path=ROOT / "scenes" / "two-contacts.toml")
         self.assertEqual(scene.truth.records.shape, (1, 2))
@@ -207,10 +207,10 @@ class Solving(unittest.TestCase):
         self.assertFalse(forces.records["taxels"][:, 2].any())
         self.assertTrue((forces.records["taxels"][:, :2] > 0).all())
         table = forces.table()
-        self.assertEqual(table.dtype.names[13:15], ("body0_taxels", "body0_status"))
-        self.assertEqual(table.dtype.names[13 + 27:], tuple(f"body{k}_T_{axis}" for k in range(3) for axis in "xyz"))
+        self.assertEqual(table.dtype.names[13:15], ("contact1_taxels", "contact1_status"))
+        self.assertEqual(table.dtype.names[13 + 27:], tuple(f"contact{k}_T_{axis}" for k in (1, 2, 3) for axis in "xyz"))
         self.assertEqual(len(table.dtype), 13 + 3 * 12)
-        np.testing.assert_array_equal(table["body1_F_z"], forces.records["F_z"][:, 1])
+        np.testing.assert_array_equal(table["contact2_F_z"], forces.records["F_z"][:, 1])
         text = text.replace("[algorithm]\n", "[algorithm]\ncontacts = 3\nslip = { limit = 0.3, hysteresis = 0.25 }\n")
         solver = sptfra.Solver(sptfra.Design.from_toml(text))
         first = solver.solve(scene.frames)

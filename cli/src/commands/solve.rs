@@ -67,9 +67,9 @@ struct SolveReport<'a> {
     /// Errors against the true forces, in percent.
     #[serde(skip_serializing_if = "Option::is_none")]
     errors: Option<ErrorSummary>,
-    /// Those of each body, where the design tells several apart and the true forces do so too.
+    /// Those of each contact, where the design and the true forces separate several.
     #[serde(skip_serializing_if = "Option::is_none")]
-    bodies: Option<BodyErrors>,
+    contacts: Option<BodyErrors>,
 }
 
 /// Solves frames and writes the forces, or prints them as they come.
@@ -94,9 +94,9 @@ pub fn run(args: &Args) -> message::Result {
         forces::compare_sensor(reference, &design.name, &design.sensor)?;
     }
     let truth = reference.map(|path| forces::read_outcomes(path, frames.len())).transpose()?;
-    let bodies = reference
+    let contacts = reference
         .filter(|_| design.algorithm.contacts > 1)
-        .map(|path| forces::read_bodies(path, frames.len(), &design.sensor))
+        .map(|path| forces::read_contacts(path, frames.len(), &design.sensor))
         .transpose()?
         .flatten();
     if let Some(thin) = design.thin_layer() {
@@ -124,7 +124,7 @@ pub fn run(args: &Args) -> message::Result {
             let found = solutions.iter().map(Outcome::from);
             ErrorSummary::new(&truth.into_iter().zip(found).collect::<Vec<_>>())
         }),
-        bodies: bodies.map(|truth| BodyErrors::new(truth.iter().zip(&solutions))),
+        contacts: contacts.map(|truth| BodyErrors::new(truth.iter().zip(&solutions))),
     };
     Ok(json_or(&report, *json, text)?.into())
 }
@@ -152,18 +152,18 @@ fn text(report: &SolveReport<'_>) -> String {
         text += &table.text(0, 0);
         text.push('\n');
     }
-    if let Some(bodies) = &report.bodies {
-        say!(text, "{} of {} frames have the right number of bodies", bodies.right, bodies.frames);
-        if bodies.right == 0 {
-            say!(text, "there is no body to compare with a true one");
+    if let Some(contacts) = &report.contacts {
+        say!(text, "{} of {} frames have the right number of contacts", contacts.right, contacts.frames);
+        if contacts.right == 0 {
+            say!(text, "there is no contact to compare with a true one");
             return text;
         }
-        let mut table = Table::new(["errors of each body", "median", "95 %", "worst"]);
+        let mut table = Table::new(["errors of each contact", "median", "95 %", "worst"]);
         let rows = [
-            ("along the surface, %", bodies.tangential),
-            ("normal, %", bodies.normal),
-            ("centre, mm", bodies.centre_mm),
-            ("T_z over F_z, mm", bodies.turn_mm),
+            ("along the surface, %", contacts.tangential),
+            ("normal, %", contacts.normal),
+            ("centre, mm", contacts.centre_mm),
+            ("T_z over F_z, mm", contacts.turn_mm),
         ];
         // A file of true forces may have no torques.
         for (name, Quantiles { median, most, worst }) in rows.into_iter().filter(|(_, of)| !of.worst.is_nan()) {

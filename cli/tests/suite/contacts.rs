@@ -1,4 +1,4 @@
-//! Bodies on the command line: their true forces, those found, and the errors of each.
+//! Contacts on the command line: their true forces, those found, and the errors of each.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::process::Output;
 
 use golden::bodies::Body;
 use golden::design::Design;
-use golden::forces::{columns, read_bodies};
+use golden::forces::{columns, read_contacts};
 
 use crate::support::{sptfra_in, workspace};
 
@@ -43,13 +43,13 @@ fn the_forces_of_each_body_are_told_and_judged() {
     let header = columns(2, 0).join(",");
     let of = |body: usize| {
         let names = ["taxels", "status", "x (m)", "y (m)", "F_x (N)", "F_y (N)", "F_z (N)", "mu", "standard_error (N)"];
-        names.map(|name| format!("body{body}_{name}")).join(",")
+        names.map(|name| format!("contact{body}_{name}")).join(",")
     };
-    let torque = |body: usize| ["x", "y", "z"].map(|axis| format!("body{body}_T_{axis} (N m)")).join(",");
-    assert!(header.ends_with(&[of(0), of(1), torque(0), torque(1)].join(",")), "{header}");
+    let torque = |body: usize| ["x", "y", "z"].map(|axis| format!("contact{body}_T_{axis} (N m)")).join(",");
+    assert!(header.ends_with(&[of(1), of(2), torque(1), torque(2)].join(",")), "{header}");
     assert_eq!(truth.lines().next(), Some(header.as_str()));
     let sensor = Design::load(&here.join("pad.toml")).unwrap().sensor;
-    let bodies = read_bodies(&here.join("f.forces.csv"), 6, &sensor).unwrap().unwrap();
+    let bodies = read_contacts(&here.join("f.forces.csv"), 6, &sensor).unwrap().unwrap();
     let close = |found: &[f64], expected: &[f64]| found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12);
     assert!(close(&bodies[0][0].force, &[0.0, 1.2, -3.0]) && close(&bodies[0][1].force, &[0.0, -1.2, -2.0]));
     assert!(close(&bodies[0][0].centre_m, &[0.010, 0.006]) && close(&bodies[0][1].centre_m, &[0.027, 0.012]));
@@ -62,19 +62,19 @@ fn the_forces_of_each_body_are_told_and_judged() {
     let without = |line: &str| line.split(',').take(31).collect::<Vec<_>>().join(",") + "\n";
     let header = without(lines.next().unwrap());
     fs::write(&older, header + &lines.map(without).collect::<String>()).unwrap();
-    let read = read_bodies(&older, 6, &sensor).unwrap().unwrap();
+    let read = read_contacts(&older, 6, &sensor).unwrap().unwrap();
     let bare = |body: &Body| Body { torque: [0.0; 3], ..*body };
     assert_eq!(read[0], bodies[0].iter().map(bare).collect::<Vec<_>>());
 
     let solve = ["solve", "pad.toml", "--frames", "f.csv", "--out", "out.csv"];
     let judged = [&solve[..], &["--reference", "f.forces.csv"]].concat();
     let said = String::from_utf8(done(here, &judged).stdout).unwrap();
-    assert!(said.contains("6 of 6 frames have the right number of bodies"), "{said}");
-    assert!(["errors of each body", "centre, mm", "T_z over F_z, mm"].iter().all(|row| said.contains(row)), "{said}");
+    assert!(said.contains("6 of 6 frames have the right number of contacts"), "{said}");
+    assert!(["errors of each contact", "centre, mm", "T_z over F_z, mm"].iter().all(|row| said.contains(row)), "{said}");
     let json = done(here, &[&judged[..], &["--json"]].concat()).stdout;
     let report: serde_json::Value = serde_json::from_slice(&json).unwrap();
-    assert_eq!((&report["bodies"]["frames"], &report["bodies"]["right"]), (&6.into(), &6.into()));
-    let error = |of: &str, at: &str| report["bodies"][of][at].as_f64().unwrap();
+    assert_eq!((&report["contacts"]["frames"], &report["contacts"]["right"]), (&6.into(), &6.into()));
+    let error = |of: &str, at: &str| report["contacts"][of][at].as_f64().unwrap();
     assert!(error("tangential", "worst") < 20.0 && error("normal", "worst") < 8.0, "{report}");
     assert!(error("tangential", "worst") > 0.1, "{report}");
     assert!((0.1..2.0).contains(&error("centre_mm", "worst")), "{report}");
@@ -94,7 +94,7 @@ fn the_forces_of_each_body_are_told_and_judged() {
     assert_eq!(field.lines().next(), Some(columns(3, 100).join(",").as_str()));
     done(here, &["solve", "pad.toml", "--frames", "f.csv", "--out", "out.npy"]);
     let [array, text, with_field] =
-        ["out.npy", "out.csv", "field.csv"].map(|name| read_bodies(&here.join(name), 6, &sensor).unwrap().unwrap());
+        ["out.npy", "out.csv", "field.csv"].map(|name| read_contacts(&here.join(name), 6, &sensor).unwrap().unwrap());
     assert_eq!(array, text);
     assert_eq!(with_field, text);
     assert!(text.iter().all(|bodies| bodies.len() == 2), "the third of three records is empty");
@@ -109,7 +109,7 @@ fn a_scene_of_one_body_judges_the_only_record() {
     assert_eq!(header, columns(0, 0).join(","));
     let judged = ["solve", "pad.toml", "--frames", "f.csv", "--out", "out.csv", "--reference", "f.forces.csv"];
     let said = String::from_utf8(done(here, &judged).stdout).unwrap();
-    assert!(said.contains("36 of 36 frames have the right number of bodies"), "{said}");
+    assert!(said.contains("36 of 36 frames have the right number of contacts"), "{said}");
     // Without records there is no telling what each of two does.
     done(here, &["scene", "two.toml", "--out", "f.csv"]);
     let truth = fs::read_to_string(here.join("f.forces.csv")).unwrap();
@@ -117,5 +117,5 @@ fn a_scene_of_one_body_judges_the_only_record() {
         truth.lines().map(|line| line.split(',').take(13).collect::<Vec<_>>().join(",") + "\n").collect();
     fs::write(here.join("f.forces.csv"), short).unwrap();
     let said = String::from_utf8(done(here, &judged).stdout).unwrap();
-    assert!(said.contains("e_Fx") && !said.contains("bodies"), "{said}");
+    assert!(said.contains("e_Fx") && !said.contains("each contact"), "{said}");
 }

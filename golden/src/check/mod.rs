@@ -4,7 +4,7 @@
 //! grid that is transposed looks like another contact.
 
 mod beyond;
-mod bodies;
+mod contacts;
 mod broken;
 mod crosstalk;
 mod dead;
@@ -55,8 +55,8 @@ pub enum Kind {
     Stuck,
     /// Each frame is divided by its own largest reading.
     Scaled,
-    /// More bodies press than one, in a design that counts them and solves one.
-    Bodies,
+    /// More contacts press than one, in a design that counts them and solves one.
+    Contacts,
 }
 
 print_as_words!(Kind);
@@ -265,13 +265,13 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
     for message in ends::check(design, frames, loaded.len(), peak) {
         found(Kind::Stuck, message);
     }
-    // Frames that are wrong in these ways seem to have bodies that nobody pressed.
+    // Frames that are wrong in these ways seem to have contacts that nobody pressed.
     let misread =
         pascals || findings.iter().any(|finding| matches!(finding.kind, Kind::Sign | Kind::Tare | Kind::Order));
     let frames: Vec<&Vec<f64>> =
         frames.iter().zip(&is_loaded).filter_map(|(frame, &loaded)| loaded.then_some(frame)).collect();
-    if let Some(message) = matrices.filter(|_| !misread).and_then(|matrices| bodies::check(design, &frames, matrices)) {
-        findings.push(Finding { kind: Kind::Bodies, message });
+    if let Some(message) = matrices.filter(|_| !misread).and_then(|matrices| contacts::check(design, &frames, matrices)) {
+        findings.push(Finding { kind: Kind::Contacts, message });
     }
     findings
 }

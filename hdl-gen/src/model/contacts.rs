@@ -1,16 +1,16 @@
-//! How many bodies press, in integers: what `sptfra_contact_counter` finds of `|w|`.
+//! How many contacts press, in integers: what `sptfra_contact_counter` finds of `|w|`.
 
 use golden::bodies::Labels;
 
 /// [`golden::bodies::SHARE`], which is over 64: of the largest `|w|`, above which a taxel touches, and of all `|w|`, from
-/// which on a blob is a body.
+/// which on a component is a contact.
 pub(super) const SHARE: i64 = 5;
 pub(super) const SHARE_OF: i64 = 64;
 
 const _: () = assert!((golden::bodies::SHARE * SHARE_OF as f64) as i64 == SHARE);
 
-/// Bodies by the steps of each taxel's `|w|` on a grid of `columns`: blobs of touching taxels that have a share of all, and
-/// one where none has.
+/// Contacts by the steps of each taxel's `|w|` on a grid of `columns`: components of touching taxels that have a share of
+/// all, and one where none has.
 pub fn count(weight: &[i64], columns: usize) -> u32 {
     let largest = weight.iter().copied().max().unwrap_or(0);
     let touched: Vec<bool> = weight.iter().map(|&weight| SHARE_OF * weight > SHARE * largest).collect();

@@ -28,7 +28,7 @@ fn line_of(columns: usize) -> Sensor {
 
 /// The first line of every force file.
 const HEADER: &str =
-    "status,F_x (N),F_y (N),F_z (N),mu,phi (rad),mu_x,mu_y,T_x (N m),T_y (N m),T_z (N m),standard_error (N),bodies";
+    "status,F_x (N),F_y (N),F_z (N),mu,phi (rad),mu_x,mu_y,T_x (N m),T_y (N m),T_z (N m),standard_error (N),contacts";
 
 fn row(value: &str) -> String {
     [value; 12].join(",")

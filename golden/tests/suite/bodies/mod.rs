@@ -103,7 +103,7 @@ fn bodies_are_counted_where_they_are_solved_as_one() {
             let findings = golden::check::check(design, &frames[..16], Some(&matrices));
             findings
                 .into_iter()
-                .filter(|found| found.kind == golden::check::Kind::Bodies)
+                .filter(|found| found.kind == golden::check::Kind::Contacts)
                 .map(|found| found.to_string())
                 .collect()
         };

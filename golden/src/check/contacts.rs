@@ -1,4 +1,4 @@
-//! Frames of more bodies than they are solved for.
+//! Frames of more contacts than they are solved for.
 
 use nalgebra::DVector;
 
@@ -8,8 +8,8 @@ use crate::design::Design;
 use crate::matrices::{Matrices, MatrixName};
 use crate::solver::reading::{Given, Reader, Reading};
 
-/// What is to be said of a design that counts bodies and is solved as if there were one: in how many frames there are
-/// more. `frames` are the loaded ones: noise has many bodies.
+/// What is to be said of a design that counts contacts and is solved as if there were one: in how many frames there are
+/// more. `frames` are the loaded ones: noise has many contacts.
 pub(super) fn check(design: &Design, frames: &[&Vec<f64>], matrices: &Matrices) -> Option<String> {
     if design.algorithm.contacts > 1 || !design.algorithm.count_contacts {
         return None;
@@ -26,8 +26,8 @@ pub(super) fn check(design: &Design, frames: &[&Vec<f64>], matrices: &Matrices) 
     let several = frames.iter().filter(several).count();
     (several > 0).then(|| {
         format!(
-            "several bodies press in {several} of {}, which algorithm.contacts = 1 solves as one: their forces may be off by a \
-             tenth to a quarter; with contacts = 4 they are told apart",
+            "several contacts press in {several} of {}, which algorithm.contacts = 1 solves as one: their forces may be off by a \
+             tenth to a quarter; with contacts = 4 they are separated",
             count(frames.len())
         )
     })
