@@ -6,7 +6,7 @@
 
 /* "TFRA", and the version of the register map that this driver knows. */
 #define MAGIC 0x54465241u
-#define MAP_VERSION 2u
+#define MAP_VERSION 3u
 
 /* AXI DMA in direct register mode. */
 #define DMA_ADDRESS 0x18u

@@ -215,7 +215,7 @@ typedef struct {
     float friction_xy[2];
     float standard_error; /* of (F_x, F_y) in N; 0 where the design has none */
     uint8_t contacts;     /* at most 1 in a design with count_contacts = false */
-    uint8_t generation;   /* of the calibration */
+    uint8_t version;      /* of the calibration */
     uint8_t replaced;     /* taxels */
     /* f_x, f_y, f_z in N of taxel iy * columns + ix, taxel after taxel, in the buffer; NULL without a field. */
     const float *field;
@@ -227,7 +227,7 @@ int sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *r
 
 /* What separates the contacts of a frame that the core marks by SPTFRA_SEVERAL_CONTACTS: on Linux the library of
  * drivers/solver, on bare metal a function of the program. `frame` is what was sent, words_in words; `result` has the
- * frame's number and the version of the calibration (generation) that it was computed by. Returns SPTFRA_OK or any other
+ * frame's number and the version of the calibration that it was computed by. Returns SPTFRA_OK or any other
  * code. */
 typedef struct {
     void *context;

@@ -9,7 +9,7 @@ const char *sptfra_error(int code)
     switch (code) {
     case SPTFRA_OK: return "no error";
     case SPTFRA_NOT_A_CORE: return "no core at this address: IDENTITY is not TFRA";
-    case SPTFRA_OTHER_MAP: return "the core's register map is of another version than this driver";
+    case SPTFRA_OTHER_MAP: return "the core's register map is of another version: take the drivers of its release";
     case SPTFRA_NO_REGISTERS: return "the core was opened without registers";
     case SPTFRA_BAD_BUFFER: return "a buffer is too small or not on a multiple of a beat's bytes, or of a cache line";
     case SPTFRA_TIMEOUT: return "no answer in the polls given";
@@ -77,7 +77,7 @@ int sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *r
     memcpy(result->friction_xy, values + SPTFRA_WORD_FRICTION_XY, sizeof result->friction_xy);
     memcpy(&result->standard_error, values + SPTFRA_WORD_STANDARD_ERROR, sizeof result->standard_error);
     result->contacts = (uint8_t)(counters & 0xFFu);
-    result->generation = (uint8_t)(counters >> 8 & 0xFFu);
+    result->version = (uint8_t)(counters >> 8 & 0xFFu);
     result->replaced = (uint8_t)(counters >> 16 & 0xFFu);
     result->field = shape->has_field ? values + SPTFRA_SUMMARY_WORDS : NULL;
     return SPTFRA_OK;

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 #: Edition of metadata.json, and of the streams that it describes.
-FORMAT = 2
+FORMAT = 3
 
 
 class Status(enum.IntFlag):
@@ -35,7 +35,7 @@ def read_metadata(path):
     """A design's metadata.json. Raises ValueError for one of another edition."""
     metadata = json.loads(pathlib.Path(path).read_text())
     if metadata.get("format") != FORMAT:
-        raise ValueError(f"{path}: format {metadata.get('format')}, this driver knows {FORMAT}")
+        raise ValueError(f"{path}: format is {metadata.get('format')}, not {FORMAT}: generate the folder anew")
     return metadata
 
 
@@ -88,18 +88,18 @@ class Layout:
 _OF = {
     "status": "status", "number": "frame", "timestamp": "timestamp", "resultant": "F_x", "torque": "T_x",
     "friction": "mu", "direction": "phi", "friction_xy": "mu_x", "standard_error": "standard_error",
-    "contacts": "contacts", "generation": "generation", "replaced": "replaced_taxels", "field": "field",
+    "contacts": "contacts", "version": "version", "replaced": "replaced_taxels", "field": "field",
 }  # fmt: skip
 _UNITS = {
     "N": "F_x F_y F_z standard_error field", "N m": "T_x T_y T_z", "rad": "phi", "cycles": "timestamp",
-    "taxels": "replaced_taxels", "": "status frame mu mu_x mu_y contacts generation",
+    "taxels": "replaced_taxels", "": "status frame mu mu_x mu_y contacts version",
 }  # fmt: skip
 _FLOATS = {"F_x": 2, "F_y": 3, "F_z": 4, "T_x": 5, "T_y": 6, "T_z": 7, "mu": 8, "phi": 9, "mu_x": 10, "mu_y": 11}
 #: The layout of every core.
 LAYOUT = Layout(
     {name: (index, 0, None) for name, index in (_FLOATS | {"standard_error": 12}).items()}
     | {"status": (0, 0, 0xFFFF), "frame": (0, 16, 0xFFFF), "timestamp": (1, 0, 0xFFFFFFFF)}
-    | {"contacts": (13, 0, 0xFF), "generation": (13, 8, 0xFF), "replaced_taxels": (13, 16, 0xFF)},
+    | {"contacts": (13, 0, 0xFF), "version": (13, 8, 0xFF), "replaced_taxels": (13, 16, 0xFF)},
     field=16,
     units={name: unit for unit, names in _UNITS.items() for name in names.split()},
 )
@@ -129,8 +129,8 @@ class Forces:
     standard_error: np.ndarray
     #: (n,) uint8: contacts; at most 1 in a design with `count_contacts = false`.
     contacts: np.ndarray
-    #: (n,) uint8: generation of the calibration.
-    generation: np.ndarray
+    #: (n,) uint8: version of the calibration.
+    version: np.ndarray
     #: (n,) uint8: taxels whose stress was made up.
     replaced: np.ndarray
     #: (n, rows, columns, 3) float32: f_x, f_y, f_z of each taxel in N; None if the design has resultants only.
@@ -161,7 +161,7 @@ def decode(words, rows, columns, has_field, layout=LAYOUT):
         friction_xy=layout.vector(words, "mu_x", "mu_y"),
         standard_error=layout.get(words, "standard_error"),
         contacts=layout.get(words, "contacts").astype(np.uint8),
-        generation=layout.get(words, "generation").astype(np.uint8),
+        version=layout.get(words, "version").astype(np.uint8),
         replaced=layout.get(words, "replaced_taxels").astype(np.uint8),
         field=field,
         units={array: layout.units[name] for array, name in _OF.items() if has_field or array != "field"},
@@ -172,7 +172,7 @@ def separate(forces, frames, solver):
     """The forces of each contact, by software, of the frames that the core marks by `SEVERAL_CONTACTS`.
 
     `frames` are those that `Sptfra.reconstruct` was given for these forces. `solver` has `solve(frames)`, as the
-    `sptfra.Solver` of a design with `contacts = N`; or it maps versions of the calibration (`generation`) to solvers.
+    `sptfra.Solver` of a design with `contacts = N`; or it maps versions of the calibration to solvers.
     Yields, for each version, the indices of its marked frames and what its solver returns for them. Raises ValueError
     on another number of frames, KeyError for a version without a solver.
     """
@@ -182,7 +182,7 @@ def separate(forces, frames, solver):
         raise ValueError(f"frames of shape {frames.shape} for the forces of {count}")
     frames = frames.reshape(count, -1)
     marked = np.flatnonzero(forces.status & Status.SEVERAL_CONTACTS)
-    for version in np.unique(forces.generation[marked]):
-        indices = marked[forces.generation[marked] == version]
+    for version in np.unique(forces.version[marked]):
+        indices = marked[forces.version[marked] == version]
         of_version = solver[int(version)] if isinstance(solver, Mapping) else solver
         yield indices, of_version.solve(frames[indices])

@@ -49,7 +49,9 @@ class Identity:
             core.read(register) for register in (Register.VERSION, Register.GEOMETRY, Register.FRAME, Register.FEATURES)
         )
         if version >> 24 != MAP_VERSION:
-            raise RuntimeError(f"the core's register map is version {version >> 24}, this driver knows {MAP_VERSION}")
+            raise RuntimeError(
+                f"the core's register map is version {version >> 24}, not {MAP_VERSION}: take the drivers of its release"
+            )
         full_scale = np.array([core.read(Register.FULL_SCALE)], dtype=np.uint32).view(np.float32)[0]
         return cls(
             version=f"{version >> 16 & 0xFF}.{version >> 8 & 0xFF}.{version & 0xFF}",

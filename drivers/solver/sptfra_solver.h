@@ -2,7 +2,7 @@
 /* Forces of each contact of a frame, in double precision, for Linux: the library libsptfra_solver of the crate sptfra-solver.
  *
  *   sptfra_solver *solver = sptfra_solver_open("design.toml", message, sizeof message);
- *   sptfra_solver_solve(solver, result.generation, frame, &forces);
+ *   sptfra_solver_solve(solver, result.version, frame, &forces);
  *   sptfra_solver_close(solver);
  *
  * The design states contacts = N: up to N contacts are separated. A frame is what went to the core: float32 or 16-bit
@@ -64,7 +64,7 @@ void sptfra_solver_close(sptfra_solver *solver);
 int sptfra_solver_calibrate(sptfra_solver *solver, uint8_t version, const double *gain, const double *offset,
     const uint16_t *dead, size_t dead_count);
 
-/* Solves a frame by the calibration of a version, which the core's answer states (`generation`; 0 with calibration = "rom"). */
+/* Solves a frame by the calibration of a version, which the answer states (0 with calibration = "rom"). */
 int sptfra_solver_solve(sptfra_solver *solver, uint8_t version, const void *frame, sptfra_solver_forces *forces);
 
 #ifdef __cplusplus

@@ -50,7 +50,7 @@ pub fn figures(plan: &Plan) -> Value {
         "kernel_gain": kernel::gain(sensor, plan.design.algorithm.kernel),
     });
     if plan.scales_frames() {
-        value["range"] = json!(plan.design.hardware.scaling);
+        value["scaling"] = json!(plan.design.hardware.scaling);
     }
     if plan.design.algorithm.count_contacts {
         value["count_contacts"] = json!({ "cycles": latency::count_contacts(sensor) });

@@ -138,7 +138,7 @@ class Package(unittest.TestCase):
             self.assertIn("standard input, line 4", running.stderr.read().decode())
 
     def test_live_says_that_there_is_no_display(self):
-        command = [sys.executable, "-m", "sptfra.live", str(ROOT / "designs" / "small.toml"), "--plot"]
+        command = [sys.executable, "-m", "sptfra.live", str(ROOT / "golden" / "tests" / "designs" / "small.toml"), "--plot"]
         without = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
         done = subprocess.run(command, input=b"", capture_output=True, env={**without, "MPLBACKEND": "agg"}, check=False)
         self.assertEqual(done.returncode, 1)

@@ -70,7 +70,10 @@ fn the_forces_of_each_body_are_told_and_judged() {
     let judged = [&solve[..], &["--reference", "f.forces.csv"]].concat();
     let said = String::from_utf8(done(here, &judged).stdout).unwrap();
     assert!(said.contains("6 of 6 frames have the right number of contacts"), "{said}");
-    assert!(["errors of each contact", "centre, mm", "T_z over F_z, mm"].iter().all(|row| said.contains(row)), "{said}");
+    assert!(
+        ["errors of each contact", "centre, mm", "T_z over F_z, mm"].iter().all(|row| said.contains(row)),
+        "{said}"
+    );
     let json = done(here, &[&judged[..], &["--json"]].concat()).stdout;
     let report: serde_json::Value = serde_json::from_slice(&json).unwrap();
     assert_eq!((&report["contacts"]["frames"], &report["contacts"]["right"]), (&6.into(), &6.into()));

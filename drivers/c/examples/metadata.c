@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FORMAT 2u
+#define FORMAT 3u
 /* Far beyond the last key that counts, for the largest answer too. */
 #define ROOM (1u << 16)
 
@@ -80,7 +80,7 @@ int metadata_read(const char *path, sptfra_shape *shape)
     text[bytes] = '\0';
     good = shape_of(text, shape);
     if (!good) {
-        fprintf(stderr, "%s: no metadata.json of format %u\n", path, FORMAT);
+        fprintf(stderr, "%s: no metadata.json of format %u: generate the folder anew\n", path, FORMAT);
     }
     free(text);
     fclose(file);

@@ -4,8 +4,8 @@
 //! grid that is transposed looks like another contact.
 
 mod beyond;
-mod contacts;
 mod broken;
+mod contacts;
 mod crosstalk;
 mod dead;
 pub(crate) mod ends;
@@ -270,7 +270,8 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
         pascals || findings.iter().any(|finding| matches!(finding.kind, Kind::Sign | Kind::Tare | Kind::Order));
     let frames: Vec<&Vec<f64>> =
         frames.iter().zip(&is_loaded).filter_map(|(frame, &loaded)| loaded.then_some(frame)).collect();
-    if let Some(message) = matrices.filter(|_| !misread).and_then(|matrices| contacts::check(design, &frames, matrices)) {
+    if let Some(message) = matrices.filter(|_| !misread).and_then(|matrices| contacts::check(design, &frames, matrices))
+    {
         findings.push(Finding { kind: Kind::Contacts, message });
     }
     findings

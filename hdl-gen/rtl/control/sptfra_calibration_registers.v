@@ -48,7 +48,7 @@ module sptfra_calibration_registers #(
     output wire tare,
     // State and errors
     input  wire active,
-    input  wire [7:0] generation,
+    input  wire [7:0] version,
     input  wire [31:0] crc,
     input  wire wrong_crc,
     input  wire not_at_rest,
@@ -89,7 +89,7 @@ module sptfra_calibration_registers #(
             CALIBRATION_STEPS_HIGH: read_data = COUNT_STEPS[63:32];
             CALIBRATION_INDEX: read_data = {index_active, 15'd0, index};
             CALIBRATION_DATA: read_data = idle ? word : 32'd0;
-            CALIBRATION_STATUS: read_data = {21'd0, taring, !idle, active, generation};
+            CALIBRATION_STATUS: read_data = {21'd0, taring, !idle, active, version};
             CALIBRATION_ERRORS: read_data = {26'd0, errors};
             CALIBRATION_CRC: read_data = crc;
             CALIBRATION_CURVE: read_data = CURVE;

@@ -52,7 +52,7 @@ module sptfra_calibration #(
     output reg  contradiction,
     // What acts
     output reg  active,
-    output reg  [7:0] generation,
+    output reg  [7:0] version,
     output reg  [31:0] crc,
     output wire [31:0] contact,
     output wire [26:0] noise,
@@ -108,7 +108,7 @@ module sptfra_calibration #(
     // Configuration, not reset, brings the design's content
     initial begin
         active = 1'b0;
-        generation = 8'd0;
+        version = 8'd0;
         crc = CRC;
         contacts = {CONTACT, CONTACT};
         noises = {NOISE, NOISE};
@@ -284,7 +284,7 @@ module sptfra_calibration #(
     always @(posedge clock) begin
         if ((state == DECIDE) && !wrong && !dead_result[33] && !reset) begin
             active <= !active;
-            generation <= generation + 8'd1;
+            version <= version + 8'd1;
             crc <= crc_end;
         end
         if ((new_contact && active) || (copy_ends && active)) begin

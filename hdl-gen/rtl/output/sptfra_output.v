@@ -12,7 +12,7 @@
 // | 8, 9    | mu, phi in rad                                                               |
 // | 10, 11  | mu_x, mu_y                                                                   |
 // | 12      | standard error of (F_x, F_y) in N                                            |
-// | 13      | contacts in bits 7:0, generation of the calibration 15:8, replaced taxels 23:16 |
+// | 13      | contacts in bits 7:0, version of the calibration 15:8, replaced taxels 23:16 |
 // | 14, 15  | 0                                                                            |
 //
 // A beat of WORDS words a cycle while the sink takes them, the first word in the lowest bits; the first beat 13 cycles

@@ -7,7 +7,7 @@ use crate::parameters::Parameters;
 use crate::plan::Plan;
 
 /// Version of the register map: one more whenever a register moves or changes its meaning.
-pub const MAP_VERSION: u8 = 2;
+pub const MAP_VERSION: u8 = 3;
 
 /// What a sample is, in `FEATURES`: 0 float32, 1 int16, 2 uint16.
 pub fn samples(plan: &Plan) -> u8 {

@@ -80,7 +80,7 @@ pub fn products(plan: &Plan) -> Vec<ProductEntry<'_>> {
 }
 
 /// Edition of the file and of the streams that it describes.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 /// The words of an output frame: values by name, then the taxels' forces, `count` words from
 /// `index` on.
@@ -160,7 +160,7 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         value["registers"] = json!(registers::map_path(plan));
     }
     if plan.scales_frames() {
-        value["range"] = json!(plan.design.hardware.scaling);
+        value["scaling"] = json!(plan.design.hardware.scaling);
     }
     if plan.design.algorithm.count_contacts {
         value["count_contacts"] = json!({ "cycles": latency::count_contacts(&plan.design.sensor) });

@@ -45,20 +45,20 @@ pub struct Model<'plan> {
     slips: bool,
     /// Of a calibration in RAM, what acts, and how many have before it.
     bank: Option<Bank>,
-    generation: u8,
+    version: u8,
 }
 
 impl<'plan> Model<'plan> {
     /// A model just out of reset.
     pub fn new(plan: &'plan Plan) -> Self {
         let bank = plan.calibration.as_ref().map(|calibration| calibration.power_up.clone());
-        Self { plan, frames: 0, slips: false, bank, generation: 0 }
+        Self { plan, frames: 0, slips: false, bank, version: 0 }
     }
 
     /// The bank that acts on the frames from now on, where the design's calibration is in RAM.
     pub fn commit(&mut self, bank: Bank) {
         if self.bank.replace(bank).is_some() {
-            self.generation = self.generation.wrapping_add(1);
+            self.version = self.version.wrapping_add(1);
         }
     }
 
@@ -71,7 +71,7 @@ impl<'plan> Model<'plan> {
     /// words that are missing in that are 0. Its timestamp is 0: when a packet comes is not the model's to know.
     pub fn process(&mut self, packet: &[u32]) -> Vec<u32> {
         let mut words = self.answer_to(packet);
-        words[words::COUNTERS] |= u32::from(self.generation) << 8;
+        words[words::COUNTERS] |= u32::from(self.version) << 8;
         words
     }
 

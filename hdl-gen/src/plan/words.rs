@@ -58,7 +58,7 @@ pub const MU: usize = 8;
 pub const MU_XY: usize = 10;
 /// Standard error.
 pub const STANDARD_ERROR: usize = 12;
-/// Contacts, generation of the calibration, replaced taxels.
+/// Contacts, version of the calibration, replaced taxels.
 pub const COUNTERS: usize = 13;
 
 /// All values, in order; words that no value names are 0.
@@ -78,7 +78,7 @@ pub const SUMMARY: [Word; 17] = [
     Word::float("mu_y", MU_XY + 1, ""),
     Word::float("standard_error", STANDARD_ERROR, "N"),
     Word::number("contacts", COUNTERS, [7, 0], ""),
-    Word::number("generation", COUNTERS, [15, 8], ""),
+    Word::number("version", COUNTERS, [15, 8], ""),
     Word::number("replaced_taxels", COUNTERS, [23, 16], "taxels"),
 ];
 

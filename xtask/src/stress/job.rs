@@ -56,7 +56,7 @@ pub struct Job {
     /// A reset came: what it had done by then may or may not have happened, and errors are forgotten.
     pub interrupted: bool,
     /// What acts once it is over.
-    pub generation: u8,
+    pub version: u8,
     /// What was refused by then.
     pub errors: u32,
     /// When the core was seen to be no longer busy.
@@ -66,6 +66,6 @@ pub struct Job {
 impl Job {
     /// Before its first access.
     pub fn new(what: What, fault: Fault) -> Self {
-        Self { what, fault, interrupted: false, generation: 0, errors: 0, over: 0 }
+        Self { what, fault, interrupted: false, version: 0, errors: 0, over: 0 }
     }
 }

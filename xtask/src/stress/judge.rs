@@ -11,7 +11,7 @@ use testbench::stream::{Exchange, Outcome};
 
 /// Between two resets the core is a new one, and answers the packets in turn; those that were on their way when a reset
 /// came have no answer. A core that drops frames may leave out those that it had no room for, and says so in the next
-/// answer. With a calibration in RAM each answer states the generation of a bank of the log, and is that bank's.
+/// answer. With a calibration in RAM each answer states the version of a bank of the log, and is that bank's.
 ///
 /// # Errors
 /// The first packet that is wrong, and how.

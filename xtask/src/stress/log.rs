@@ -1,4 +1,4 @@
-//! What acted on the frames of a core with its calibration in RAM, generation by generation, and which answers show it.
+//! What acted on the frames of a core with its calibration in RAM, version by version, and which answers show it.
 
 use std::collections::BTreeSet;
 
@@ -13,7 +13,7 @@ use testbench::stream::{Exchange, Outcome};
 /// Packets before the first one with its offsets among which the frames of a tare are looked for.
 const TARE_REACH: usize = 400;
 
-/// Where a generation's bank comes from.
+/// Where a version's bank comes from.
 #[derive(Clone, Debug)]
 pub enum What {
     /// It was written, and committed.
@@ -27,7 +27,7 @@ pub enum What {
     },
 }
 
-/// A generation.
+/// A version.
 #[derive(Clone, Debug)]
 pub struct Acting {
     /// Its bank.
@@ -68,7 +68,7 @@ impl Commits {
 /// What a processor did.
 #[derive(Clone, Debug)]
 pub struct Log {
-    /// By generation from power-up on, not modulo 256.
+    /// By version from power-up on, not modulo 256.
     pub acting: Vec<Acting>,
     /// Of what acts in the end.
     pub crc: u32,
@@ -78,7 +78,7 @@ pub struct Log {
     pub dropped: Option<u32>,
 }
 
-/// Lets the banks of the generations that answers state act in the model.
+/// Lets the banks of the versions that answers state act in the model.
 pub struct Banks<'a> {
     plan: &'a Plan,
     log: &'a Log,
@@ -98,34 +98,29 @@ impl<'a> Banks<'a> {
         Self { plan, log, packets, dropped, answered, acts: 0, bank }
     }
 
-    /// Goes on to the generation that an answer states.
+    /// Goes on to the version that an answer states.
     ///
     /// # Errors
-    /// It goes back or there is no such generation, the frame began when another one acted already, or no frames are
+    /// It goes back or there is no such version, the frame began when another one acted already, or no frames are
     /// there that a tare can have made its bank of.
     pub fn follow(&mut self, exchange: &Exchange, model: &mut Model<'_>) -> Result<(), String> {
         let Some(census) = exchange.words.get(COUNTERS) else { return Ok(()) };
         let (packet, stated) = (exchange.packet, (census >> 8) as u8);
-        let generation = self.acts + usize::from(stated.wrapping_sub(self.acts as u8));
+        let version = self.acts + usize::from(stated.wrapping_sub(self.acts as u8));
         let last = self.log.acting.len() - 1;
-        if generation > last {
-            return Err(format!("packet {packet}: generation {stated} (modulo 256) after {} of {last}", self.acts));
+        if version > last {
+            return Err(format!("packet {packet}: version {stated} (modulo 256) after {} of {last}", self.acts));
         }
-        if let Some(next) = self.log.acting.get(generation + 1).filter(|next| exchange.first_in >= next.since) {
+        if let Some(next) = self.log.acting.get(version + 1).filter(|next| exchange.first_in >= next.since) {
             let since = next.since;
-            return Err(format!(
-                "packet {packet}: generation {generation}, though the next one acts since cycle {since}"
-            ));
+            return Err(format!("packet {packet}: version {version}, though the next one acts since cycle {since}"));
         }
-        while self.acts < generation {
+        while self.acts < version {
             self.acts += 1;
             let bank = match &self.log.acting[self.acts].what {
                 What::Bank(bank) => bank.clone(),
                 What::Tare { log2, crc } => self.tared(1 << log2, *crc, packet).ok_or_else(|| {
-                    format!(
-                        "packet {packet}: no 2^{log2} frames before it make the offsets of generation {}",
-                        self.acts
-                    )
+                    format!("packet {packet}: no 2^{log2} frames before it make the offsets of version {}", self.acts)
                 })?,
             };
             model.commit(bank.clone());
@@ -222,12 +217,12 @@ mod tests {
     }
 
     #[test]
-    fn generations_that_cannot_be_are_found() {
+    fn versions_that_cannot_be_are_found() {
         type Fault = fn(&mut Vec<Exchange>, &mut Log);
         let faults: [(&str, Fault); 6] = [
-            ("generation 3 (modulo 256) after 2 of 2", |answers, _| answers[5].words[COUNTERS] += 1 << 8),
-            ("generation 0 (modulo 256) after 1 of 2", |answers, _| answers[3].words[COUNTERS] -= 1 << 8),
-            ("packet 3: generation 1, though the next one acts", |answers, _| answers[3].first_in = 350),
+            ("version 3 (modulo 256) after 2 of 2", |answers, _| answers[5].words[COUNTERS] += 1 << 8),
+            ("version 0 (modulo 256) after 1 of 2", |answers, _| answers[3].words[COUNTERS] -= 1 << 8),
+            ("packet 3: version 1, though the next one acts", |answers, _| answers[3].first_in = 350),
             ("packet 3 differs", |answers, _| answers[3].words[0] ^= 1),
             ("packet 4: no 2^1 frames", |_, log| log.acting[2].what = What::Tare { log2: 1, crc: 5 }),
             ("packet 4: no 2^0 frames", |_, log| {

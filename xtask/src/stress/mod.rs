@@ -68,7 +68,7 @@ pub struct Report {
     pub resets: u64,
     /// Cycles simulated.
     pub cycles: u64,
-    /// What was asked of a calibration in RAM meanwhile: every answer is that of the one bank whose generation it states.
+    /// What was asked of a calibration in RAM meanwhile: every answer is that of the one bank whose version it states.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Commits>,
 }

@@ -163,7 +163,7 @@ impl<'a> Processor<'a> {
         match address {
             address::CALIBRATION_STATUS if self.ending && data & STATUS_TARING != 0 => self.job = None,
             address::CALIBRATION_STATUS if data & STATUS_BUSY != 0 => self.accesses.push_front(access),
-            address::CALIBRATION_STATUS => (job.generation, job.over) = (data as u8, cycle),
+            address::CALIBRATION_STATUS => (job.version, job.over) = (data as u8, cycle),
             address::CALIBRATION_ERRORS => {
                 job.errors = data;
                 self.accesses.push_front(write(address, data));
@@ -178,13 +178,13 @@ impl<'a> Processor<'a> {
         }
     }
 
-    /// What became of a job, by the generation and the CRC of what acts.
+    /// What became of a job, by the version and the CRC of what acts.
     fn conclude(&mut self, mut job: Job, crc: u32) {
         let before = self.log.acting.len() - 1;
-        let accepted = match job.generation.wrapping_sub(before as u8) {
+        let accepted = match job.version.wrapping_sub(before as u8) {
             0 => false,
             1 => true,
-            _ => return self.fault(&job, &format!("generation {} after {before}", job.generation)),
+            _ => return self.fault(&job, &format!("version {} after {before}", job.version)),
         };
         let is_right = match &mut job.what {
             What::Bank(bank) => {

@@ -10,8 +10,8 @@ use testbench::registers::{Access, address};
 use testbench::trial::model_answers;
 
 use super::{
-    ACTIVE, BUSY, COUNTERS, OUT_OF_RANGE, WRONG_CRC, counts, design, errors, generation, judged, load, perform,
-    read_back, subject, wait,
+    ACTIVE, BUSY, COUNTERS, OUT_OF_RANGE, WRONG_CRC, counts, design, errors, judged, load, perform, read_back, subject,
+    version, wait,
 };
 use crate::support::{built, planned, shipped, simulate_exactly};
 
@@ -97,11 +97,11 @@ fn a_bank_of_any_content_acts_once_it_is_committed() {
         let bank = random_bank(subject.calibration(), &mut random);
         perform(&mut core, &load(&bank, bank.crc()));
         assert_eq!(errors(&mut core), 0);
-        assert_eq!(generation(&mut core), expected);
+        assert_eq!(version(&mut core), expected);
         assert_eq!(core.read(address::CALIBRATION_CRC).expect("a reply"), bank.crc());
         assert_eq!(read_back(&mut core, true), bank.words());
         let packets = counts(&subject.plan, 5, &mut random);
-        // The generations before are of no frame here.
+        // The versions before are of no frame here.
         let banks = vec![bank; expected as usize + 1];
         let seen = judged(&subject.plan, &mut core, &packets, &banks).unwrap_or_else(|error| panic!("{error}"));
         assert!(seen.iter().all(|&seen| seen == expected as usize));
@@ -123,14 +123,14 @@ fn half_a_bank_never_acts() {
         perform(&mut core, &whole[..=written]);
         perform(&mut core, &[commit]);
         assert_eq!(errors(&mut core), WRONG_CRC, "{written} words");
-        assert_eq!(generation(&mut core), 0);
+        assert_eq!(version(&mut core), 0);
         judged(&subject.plan, &mut core, &packets, std::slice::from_ref(&power_up)).unwrap_or_else(|e| panic!("{e}"));
         // A reset makes no difference, nor does one of the core.
         core.write(address::CONTROL, 1).expect("a reply");
         assert_eq!(read_back(&mut core, true), power_up.words());
     }
     perform(&mut core, &whole);
-    assert_eq!((errors(&mut core), generation(&mut core)), (0, 1));
+    assert_eq!((errors(&mut core), version(&mut core)), (0, 1));
 }
 
 #[test]
@@ -144,7 +144,7 @@ fn a_reset_leaves_the_calibration() {
     for _ in 0..4 {
         core.step(Inputs::default()).expect("runs");
     }
-    assert_eq!(generation(&mut core), 1);
+    assert_eq!(version(&mut core), 1);
     assert_eq!(core.read(address::CALIBRATION_CRC).expect("a reply"), bank.crc());
     assert_eq!(read_back(&mut core, true), bank.words());
 }
@@ -233,7 +233,7 @@ fn while_busy_writes_are_refused() {
     wait(&mut core);
     core.write(address::CALIBRATION_INDEX, ACTIVE).expect("a reply");
     assert_eq!(core.read(address::CALIBRATION_DATA).expect("a reply"), word);
-    assert_eq!((generation(&mut core), read_back(&mut core, true)), (1, bank.words()));
+    assert_eq!((version(&mut core), read_back(&mut core, true)), (1, bank.words()));
 }
 
 /// The bit that reads what acts writes the other bank all the same: what acts has a CRC, and frames inside.

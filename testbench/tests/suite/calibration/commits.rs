@@ -8,7 +8,7 @@ use testbench::stream::{Mode, Pattern, Traffic};
 use testbench::trial::timeout;
 use testbench::verilate::Built;
 
-use super::{BUSY, Subject, core, counts, errors, generation, judged, judged_in, load, subject};
+use super::{BUSY, Subject, core, counts, errors, judged, judged_in, load, subject, version};
 use crate::support::effort::some_of;
 use crate::support::faults::broken;
 use crate::support::in_parallel;
@@ -54,10 +54,10 @@ pub(super) fn commits_at_every_moment(
             core.plan(10, write);
         }
         core.plan(loaded(calibration.words()) + cycle, *commit);
-        let generations = judged(&subject.plan, &mut core, &packets, &banks)?;
-        match (generations.first(), generations.last(), errors(&mut core), generation(&mut core)) {
-            (Some(0), Some(1), 0, 1) => Ok(generations.iter().sum()),
-            other => Err(format!("{other:?}, first and last generation, errors, generation")),
+        let versions = judged(&subject.plan, &mut core, &packets, &banks)?;
+        match (versions.first(), versions.last(), errors(&mut core), version(&mut core)) {
+            (Some(0), Some(1), 0, 1) => Ok(versions.iter().sum()),
+            other => Err(format!("{other:?}, first and last version, errors, version")),
         }
     });
     let changes: std::collections::BTreeSet<usize> = told.iter().flatten().copied().collect();
@@ -108,10 +108,10 @@ fn commits_on_each_others_heels_among_bad_frames() {
         }
         let modes = Mode::all(seed);
         let traffic = Traffic::new(&packets, timeout(&subject.plan)).with_mode(&modes[seed as usize % 4]);
-        let generations = judged_in(&subject.plan, &mut core, &traffic, &banks);
+        let versions = judged_in(&subject.plan, &mut core, &traffic, &banks);
         let errors = errors(&mut core);
-        assert_eq!((errors, generations.as_ref().err()), (0, None), "seed {seed}");
-        generations.ok()?.last().copied()
+        assert_eq!((errors, versions.as_ref().err()), (0, None), "seed {seed}");
+        versions.ok()?.last().copied()
     });
     assert!(told.iter().all(|&last| last > Some(7)), "{told:?}");
 }
@@ -175,7 +175,7 @@ fn a_frame_that_takes_its_time_keeps_its_bank() {
     let slow = Pattern::Bursts { seed: 3, longest_run: 1, longest_pause: 600 };
     let traffic = Traffic { source: slow, ..Traffic::new(&packets, 100_000) };
     let banks = [subject.calibration().power_up.clone(), first];
-    let generations = judged_in(&subject.plan, &mut core, &traffic, &banks).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!((generations[0], generations[1]), (0, 1));
+    let versions = judged_in(&subject.plan, &mut core, &traffic, &banks).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((versions[0], versions[1]), (0, 1));
     assert!(errors(&mut core) & BUSY != 0);
 }

@@ -16,7 +16,7 @@ use testbench::stream::{Mode, Traffic};
 use testbench::trial::timeout;
 
 use super::commits::commits_at_every_moment;
-use super::{Subject, core, errors, generation, judged, judged_in, load, perform, read_back};
+use super::{Subject, core, errors, judged, judged_in, load, perform, read_back, version};
 pub use crate::support::calibrated::design_with_curve;
 use crate::support::effort::some_of;
 use crate::support::faults::broken;
@@ -121,7 +121,7 @@ fn any_curve_acts_once_it_is_committed() {
     for expected in 1..40 {
         let bank = random_bank_and_curve(subject, &mut random);
         perform(&mut core, &load(&bank, bank.crc()));
-        assert_eq!((errors(&mut core), generation(&mut core)), (0, expected));
+        assert_eq!((errors(&mut core), version(&mut core)), (0, expected));
         assert_eq!(read_back(&mut core, true), bank.words());
         let packets = counts(subject, 5, &mut random);
         let banks = vec![bank; expected as usize + 1];
@@ -183,9 +183,9 @@ fn commits_on_each_others_heels_among_bad_frames() {
         }
         let modes = Mode::all(seed);
         let traffic = Traffic::new(&packets, timeout(&subject.plan)).with_mode(&modes[seed as usize % 4]);
-        let generations = judged_in(&subject.plan, &mut core, &traffic, &banks);
-        assert_eq!((errors(&mut core), generations.as_ref().err()), (0, None), "seed {seed}");
-        generations.ok()?.last().copied()
+        let versions = judged_in(&subject.plan, &mut core, &traffic, &banks);
+        assert_eq!((errors(&mut core), versions.as_ref().err()), (0, None), "seed {seed}");
+        versions.ok()?.last().copied()
     });
     assert!(told.iter().all(|&last| last > Some(4)), "{told:?}");
 }

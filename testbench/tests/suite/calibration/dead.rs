@@ -15,8 +15,8 @@ use testbench::trial::model_answers;
 
 use super::commits::commits_at_every_moment;
 use super::{
-    CONTRADICTION, COUNTERS, OUT_OF_RANGE, Subject, WRONG_CRC, counts, design, errors, generation, judged, load,
-    perform, read_back, wait,
+    CONTRADICTION, COUNTERS, OUT_OF_RANGE, Subject, WRONG_CRC, counts, design, errors, judged, load, perform,
+    read_back, version, wait,
 };
 use crate::support::effort::some_of;
 use crate::support::faults::broken;
@@ -105,7 +105,7 @@ fn a_map_of_any_content_acts_once_it_is_committed() {
     let mut core = subject.core(2);
     for (expected, bank) in banks.iter().enumerate().skip(1) {
         perform(&mut core, &load(bank, bank.crc()));
-        assert_eq!((errors(&mut core), generation(&mut core)), (0, expected as u32), "{:?}", bank.dead);
+        assert_eq!((errors(&mut core), version(&mut core)), (0, expected as u32), "{:?}", bank.dead);
         assert_eq!(read_back(&mut core, true), bank.words());
         let packets = with_bad_readings(counts(&subject.plan, 5, &mut random), &bank.dead.dead.taxels);
         let acting = vec![bank.clone(); expected + 1];
@@ -165,7 +165,7 @@ fn another_design_with_a_map_from_end_to_end() {
     let power_up = &subject.calibration().power_up;
     let taxels = subject.plan.taxels();
     let mut core = subject.core(5);
-    for (generation_before, place) in [0, 1].into_iter().zip([0, 7]) {
+    for (version_before, place) in [0, 1].into_iter().zip([0, 7]) {
         let with_sum = |sum: i64| {
             let mut bank = with_dead(&subject.plan, power_up, &[0, 1, 2]);
             let mut left = sum;
@@ -182,9 +182,9 @@ fn another_design_with_a_map_from_end_to_end() {
         };
         let (most, beyond) = (with_sum(MOST_WEIGHT), with_sum(MOST_WEIGHT + 1));
         perform(&mut core, &load(&beyond, beyond.crc()));
-        assert_eq!((errors(&mut core), generation(&mut core)), (CONTRADICTION, generation_before), "place {place}");
+        assert_eq!((errors(&mut core), version(&mut core)), (CONTRADICTION, version_before), "place {place}");
         perform(&mut core, &load(&most, most.crc()));
-        assert_eq!((errors(&mut core), generation(&mut core)), (0, generation_before + 1), "place {place}");
+        assert_eq!((errors(&mut core), version(&mut core)), (0, version_before + 1), "place {place}");
     }
 }
 
@@ -211,10 +211,10 @@ fn a_tare_keeps_the_map() {
     packets.extend(counts(&subject.plan, 4, &mut random));
     let answers = super::send(&mut core, &packets);
     let banks = [of.power_up.clone(), bank, tared.clone()];
-    let generations = super::judge(&subject.plan, &packets, &answers, &banks).unwrap_or_else(|e| panic!("{e}"));
-    assert!(generations[..8].iter().all(|&generation| generation == 1) && generations.last() == Some(&2));
+    let versions = super::judge(&subject.plan, &packets, &answers, &banks).unwrap_or_else(|e| panic!("{e}"));
+    assert!(versions[..8].iter().all(|&version| version == 1) && versions.last() == Some(&2));
     wait(&mut core);
-    assert_eq!((errors(&mut core), generation(&mut core)), (0, 2));
+    assert_eq!((errors(&mut core), version(&mut core)), (0, 2));
     assert_eq!(read_back(&mut core, true), tared.words());
 }
 
@@ -240,7 +240,7 @@ fn maps_that_contradict_themselves_are_refused() {
     let packets = counts(&subject.plan, 2, &mut ChaCha8Rng::seed_from_u64(6));
     for (what, bank) in &cases {
         perform(&mut core, &load(bank, bank.crc()));
-        assert_eq!((errors(&mut core), generation(&mut core)), (CONTRADICTION, 0), "{what}");
+        assert_eq!((errors(&mut core), version(&mut core)), (CONTRADICTION, 0), "{what}");
         assert_eq!(core.read(address::CALIBRATION_CRC).expect("a reply"), of.power_up.crc());
         assert_eq!(read_back(&mut core, true), of.power_up.words(), "{what}");
         judged(&subject.plan, &mut core, &packets, std::slice::from_ref(&of.power_up))
@@ -257,10 +257,10 @@ fn maps_that_contradict_themselves_are_refused() {
         errors(&mut core);
         perform(&mut core, &whole[..written]);
         perform(&mut core, &[commit]);
-        assert_eq!((errors(&mut core), generation(&mut core)), (WRONG_CRC, 0), "{written} words");
+        assert_eq!((errors(&mut core), version(&mut core)), (WRONG_CRC, 0), "{written} words");
     }
     perform(&mut core, &whole);
-    assert_eq!((errors(&mut core), generation(&mut core)), (0, 1));
+    assert_eq!((errors(&mut core), version(&mut core)), (0, 1));
 }
 
 /// Words of the map that are out of bounds are not written.

@@ -1,5 +1,5 @@
 //! A calibration in RAM: banks with any content, commits at any moment, what is refused, tare. Every frame is compared
-//! bit for bit with the model of the bank whose generation it states.
+//! bit for bit with the model of the bank whose version it states.
 
 mod banks;
 mod commits;
@@ -133,12 +133,12 @@ fn errors(core: &mut Controlled) -> u32 {
     errors
 }
 
-fn generation(core: &mut Controlled) -> u32 {
+fn version(core: &mut Controlled) -> u32 {
     core.read(address::CALIBRATION_STATUS).expect("a reply") & 0xFF
 }
 
 /// Sends packets back to back while the planned accesses go on; each answer against the model of the bank of the
-/// generation that it states, which never goes back. `banks` are those of the generations from 0 on. The generations.
+/// version that it states, which never goes back. `banks` are those of the versions from 0 on. The versions.
 fn judged(plan: &Plan, core: &mut Controlled, packets: &[Vec<u32>], banks: &[Bank]) -> Result<Vec<usize>, String> {
     let traffic = Traffic::new(packets, timeout(plan));
     judged_in(plan, core, &traffic, banks)
@@ -154,11 +154,11 @@ fn judged_in(plan: &Plan, core: &mut Controlled, traffic: &Traffic<'_>, banks: &
 fn judge(plan: &Plan, packets: &[Vec<u32>], answers: &[Vec<u32>], banks: &[Bank]) -> Result<Vec<usize>, String> {
     let mut model = Model::new(plan);
     let mut acts = 0;
-    let mut generations = Vec::new();
+    let mut versions = Vec::new();
     for (frame, (words, packet)) in answers.iter().zip(packets).enumerate() {
         let stated = (words[COUNTERS] >> 8 & 0xFF) as usize;
         if stated < acts || stated >= banks.len() {
-            return Err(format!("frame {frame}: generation {stated} after {acts}"));
+            return Err(format!("frame {frame}: version {stated} after {acts}"));
         }
         while acts < stated {
             acts += 1;
@@ -167,14 +167,14 @@ fn judge(plan: &Plan, packets: &[Vec<u32>], answers: &[Vec<u32>], banks: &[Bank]
         let expected = model.process(packet);
         if *words != expected {
             let at = words.iter().zip(&expected).position(|(seen, expected)| seen != expected);
-            return Err(format!("frame {frame}, generation {stated}: word {at:?} differs"));
+            return Err(format!("frame {frame}, version {stated}: word {at:?} differs"));
         }
-        generations.push(stated);
+        versions.push(stated);
     }
     if answers.len() != packets.len() {
         return Err(format!("{} answers to {} frames", answers.len(), packets.len()));
     }
-    Ok(generations)
+    Ok(versions)
 }
 
 /// Sends packets into a core that is not reset before, the sink always willing; the answers without their timestamps.

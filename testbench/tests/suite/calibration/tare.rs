@@ -9,8 +9,8 @@ use testbench::stream::{Mode, Pattern, Traffic, exchange};
 use testbench::trial::timeout;
 
 use super::{
-    BAD_FRAME, BUSY, NOT_AT_REST, OUT_OF_RANGE, Subject, core, counts, errors, generation, judge, load, perform,
-    read_back, send, subject,
+    BAD_FRAME, BUSY, NOT_AT_REST, OUT_OF_RANGE, Subject, core, counts, errors, judge, load, perform, read_back, send,
+    subject, version,
 };
 use crate::support::in_parallel;
 
@@ -57,12 +57,12 @@ fn at_rest_the_mean_becomes_the_offsets() {
         let packets = [frames, rest(subject, 3, 40.0, &mut random), counts(&subject.plan, 6, &mut random)].concat();
         let answers = send(&mut core, &packets);
         let banks = [subject.calibration().power_up.clone(), bank, tared.clone()];
-        let generations = judge(&subject.plan, &packets, &answers, &banks).unwrap_or_else(|error| panic!("{error}"));
+        let versions = judge(&subject.plan, &packets, &answers, &banks).unwrap_or_else(|error| panic!("{error}"));
         // The frames of the tare are answered as before it; the last ones are tared.
-        assert!(generations[..1 << log2].iter().all(|&generation| generation == 1), "{generations:?}");
-        assert_eq!(generations.last(), Some(&2), "2^{log2}: {generations:?}");
+        assert!(versions[..1 << log2].iter().all(|&version| version == 1), "{versions:?}");
+        assert_eq!(versions.last(), Some(&2), "2^{log2}: {versions:?}");
         super::wait(&mut core);
-        assert_eq!((errors(&mut core), generation(&mut core)), (0, 2));
+        assert_eq!((errors(&mut core), version(&mut core)), (0, 2));
         assert_eq!(read_back(&mut core, true), tared.words());
         assert_eq!(core.read(address::CALIBRATION_CRC).expect("a reply"), tared.crc());
     }
@@ -100,14 +100,14 @@ fn what_is_no_rest_changes_nothing() {
         core.write(address::TARE, 3).expect("a reply");
         let answers = send(&mut core, &packets);
         let banks = [calibration.power_up.clone(), bank.clone()];
-        let generations =
+        let versions =
             judge(&subject.plan, &packets, &answers, &banks).unwrap_or_else(|error| panic!("{what}: {error}"));
-        assert!(generations.iter().all(|&generation| generation == 1), "{what}");
+        assert!(versions.iter().all(|&version| version == 1), "{what}");
         // A NaN counts as 0, and so spreads too.
         let seen = errors(&mut core);
         assert!(seen & error != 0 && seen & !(BAD_FRAME | NOT_AT_REST) == 0, "{what}: {seen:#x}");
         assert!(error == BAD_FRAME || seen == NOT_AT_REST, "{what}: {seen:#x}");
-        assert_eq!((generation(&mut core), read_back(&mut core, true)), (1, bank.words()), "{what}");
+        assert_eq!((version(&mut core), read_back(&mut core, true)), (1, bank.words()), "{what}");
     }
 }
 
@@ -125,7 +125,7 @@ fn under_load_nothing_is_tared() {
     let banks = [subject.calibration().power_up.clone(), bank.clone()];
     judge(&subject.plan, &packets, &answers, &banks).unwrap_or_else(|error| panic!("{error}"));
     assert!(errors(&mut core) & (NOT_AT_REST | BAD_FRAME) != 0);
-    assert_eq!((generation(&mut core), read_back(&mut core, true)), (1, bank.words()));
+    assert_eq!((version(&mut core), read_back(&mut core, true)), (1, bank.words()));
 }
 
 /// An offset near its bound, and a reading on the other side that would take it beyond.
@@ -148,7 +148,7 @@ fn a_tare_to_an_offset_out_of_bounds_changes_nothing() {
     core.write(address::TARE, 0).expect("a reply");
     send(&mut core, &[frame.clone(), frame]);
     assert_eq!(errors(&mut core), OUT_OF_RANGE);
-    assert_eq!((generation(&mut core), read_back(&mut core, true)), (1, bank.words()));
+    assert_eq!((version(&mut core), read_back(&mut core, true)), (1, bank.words()));
 }
 
 /// A tare that begins within a frame, where another one has just failed, takes whole frames that begin after it.
@@ -184,11 +184,11 @@ fn a_tare_again_within_a_frame_leaves_the_rest_of_it_alone() {
         exchange(&mut core, &traffic, |_| ()).expect("answers");
         let errors = errors(&mut core);
         let tared = read_back(&mut core, true);
-        match generation(&mut core) {
+        match version(&mut core) {
             // Refused while the first one ran, or not at an end yet.
             1 => Ok(false),
             2 if pairs.contains(&tared) => Ok(errors & BAD_FRAME != 0),
-            other => Err(format!("cycle {cycle}: generation {other}, errors {errors:#x}, offsets of no two frames")),
+            other => Err(format!("cycle {cycle}: version {other}, errors {errors:#x}, offsets of no two frames")),
         }
     });
     let wrong: Vec<&String> = told.iter().filter_map(|told| told.as_ref().err()).collect();
@@ -206,5 +206,5 @@ fn a_soft_reset_ends_a_tare() {
     core.write(address::TARE, 4).expect("a reply");
     core.write(address::CONTROL, 1).expect("a reply");
     super::wait(&mut core);
-    assert_eq!((errors(&mut core), generation(&mut core)), (BAD_FRAME, 1));
+    assert_eq!((errors(&mut core), version(&mut core)), (BAD_FRAME, 1));
 }

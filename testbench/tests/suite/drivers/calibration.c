@@ -62,7 +62,7 @@ int main(int count, char **arguments)
     CHECK(sptfra_identify(&device, &identity) == SPTFRA_OK && identity.calibration_in_ram && identity.curve_in_ram);
     CHECK(identity.replaceable == 2 && !identity.drops_frames);
     send(&device, 5.0f, &result);
-    CHECK(result.generation == 0 && result.replaced == 1);
+    CHECK(result.version == 0 && result.replaced == 1);
     length = 4u * taxels + 5u + 4u * (MOST_POINTS - 1u) + 3u;
     file = fopen(arguments[2], "rb");
     CHECK(file != NULL);
@@ -89,7 +89,7 @@ int main(int count, char **arguments)
         }
         banks++;
         send(&device, 5.0f, &result);
-        CHECK(result.generation == banks);
+        CHECK(result.version == banks);
     }
     CHECK(banks > 3);
     /* What is refused before anything is written, and what the core refuses. */
@@ -148,7 +148,7 @@ int main(int count, char **arguments)
         CHECK(sptfra_load_bank(&device, gain, offset, &replaced, floors[word], POLLS) == SPTFRA_OK);
         banks++;
         send(&device, 5.0f, &result);
-        CHECK(result.generation == banks && (result.status & SPTFRA_NO_CONTACT) == none[word]);
+        CHECK(result.version == banks && (result.status & SPTFRA_NO_CONTACT) == none[word]);
     }
     /* Tare: four frames at rest, then nothing is read; then one that is not. */
     CHECK(sptfra_load_bank(&device, gain, offset, &replaced, 20.0, 0) == SPTFRA_TIMEOUT);
@@ -160,11 +160,11 @@ int main(int count, char **arguments)
     CHECK(sptfra_read_calibration(&device, 0, 1, &word) == SPTFRA_CALIBRATION_BUSY);
     for (index = 0; index < 4; index++) {
         send(&device, 300.0f, &result);
-        CHECK(result.generation == (uint8_t)(banks + 1) && !(result.status & SPTFRA_NO_CONTACT));
+        CHECK(result.version == (uint8_t)(banks + 1) && !(result.status & SPTFRA_NO_CONTACT));
     }
     CHECK(sptfra_calibration_wait(&device, POLLS) == SPTFRA_OK);
     send(&device, 300.0f, &result);
-    CHECK(result.generation == (uint8_t)(banks + 2) && (result.status & SPTFRA_NO_CONTACT));
+    CHECK(result.version == (uint8_t)(banks + 2) && (result.status & SPTFRA_NO_CONTACT));
     CHECK(sptfra_tare(&device, 1) == SPTFRA_OK);
     send(&device, 300.0f, &result);
     send(&device, 310.0f, &result);

@@ -27,13 +27,13 @@ def main():
     assert sensor.identity.calibration_in_ram and sensor.identity.replaceable == 2 and sensor.identity.curve_in_ram
     files = sorted(path for path in pathlib.Path(folder).glob("*.csv") if not path.stem.endswith(".curve"))
     assert len(files) > 3
-    for generation, path in enumerate(files, 1):
+    for version, path in enumerate(files, 1):
         data = path.with_suffix(".words").read_bytes()
         (noise,), words = np.frombuffer(data, "<f8", 1), np.frombuffer(data, "<u4", offset=8)
         curve = path.with_suffix(".curve.csv")
         sensor.load_calibration(path, noise or None, curve=curve if curve.exists() else None)
         assert [sensor.read_calibration(index) for index in range(len(words))] == words.tolist(), path
-        assert sensor.reconstruct(np.full((rows, columns), 5.0)).generation.tolist() == [generation]
+        assert sensor.reconstruct(np.full((rows, columns), 5.0)).version.tolist() == [version]
     wrong = pathlib.Path(folder, "wrong.txt")
     for text, message in [
         ("1.0,0.0\n1.0\n", "line 2: '1.0' is no gain"),
@@ -100,9 +100,9 @@ def main():
     assert "a tare takes" in refused(ValueError, lambda: sensor.tare(rest[:3]))
     # Frames of another shape are refused before the core tares: those that follow, at rest, are no tare.
     rest = np.full((8, rows, columns), 450.0)
-    before = sensor.reconstruct(rest).generation[-1]
+    before = sensor.reconstruct(rest).version[-1]
     assert "the core has" in refused(ValueError, lambda: sensor.tare(np.full((8, columns, rows), 300.0)))
-    after = [sensor.reconstruct(rest) for _ in range(2)][-1].generation[-1]
+    after = [sensor.reconstruct(rest) for _ in range(2)][-1].version[-1]
     assert after == before, (before, after)
     assert machine.calls.machine_faults(machine.handle) == 0
     print(f"PASS: {len(files)} banks")

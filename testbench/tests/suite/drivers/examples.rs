@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use golden::design::{Design, Outputs};
+use hdl_gen::blocks::registers::MAP_VERSION;
 use hdl_gen::emit::emit;
 use hdl_gen::plan::Plan;
 use testbench::tools;
@@ -180,7 +181,11 @@ fn the_program_takes_queues_and_cores_without_registers() {
         };
         refused(true, "--queue 1", "--queue 1: 2 to 256 frames");
         refused(true, "--queue", "--queue frames.csv: 2 to 256 frames");
-        refused(true, "--queue 8 frames.csv --metadata", "frames.csv: no metadata.json of format 2");
+        refused(
+            true,
+            "--queue 8 frames.csv --metadata",
+            "frames.csv: no metadata.json of format 3: generate the folder anew",
+        );
         refused(true, "--metadata none.json", "none.json: No such file");
     }
     // A bad line: the frames before it have their answers.
@@ -265,12 +270,14 @@ fn the_linux_program_finds_core_dma_and_buffer() {
         fs::write(place, bytes).expect("written");
     };
     refused("no UIO device sptfra-core: is the overlay loaded");
-    let identity: Vec<u8> = [0x5446_5241_u32, 0x0200_0000].iter().flat_map(|word| word.to_le_bytes()).collect();
-    let core = [identity, vec![0; 0x1000 - 8]].concat();
+    let core = |map: u8| {
+        let identity = [0x5446_5241, u32::from(map) << 24].map(u32::to_le_bytes).concat();
+        [identity, vec![0; 0x1000 - 8]].concat()
+    };
     for (device, name) in [("uio0", "other"), ("uio1", "sptfra-dma"), ("uio2", "sptfra-core")] {
         write(&format!("sys/class/uio/{device}/name"), format!("{name}\n").as_bytes());
     }
-    write("dev/uio2", &core);
+    write("dev/uio2", &core(MAP_VERSION));
     refused("root/dev/uio1: No such file");
     write("dev/uio1", &vec![0; 0x10000]);
     refused("no buffer sptfra-buffer: is the module u-dma-buf loaded?");
@@ -280,6 +287,8 @@ fn the_linux_program_finds_core_dma_and_buffer() {
     // The core is there, and the DMA, a file, never ends its reset.
     refused("core: no answer in the polls given");
     assert_eq!(fs::read(root.join("dev/uio1")).expect("there")[0], 4, "the reset is in the DMA's register");
+    write("dev/uio2", &core(MAP_VERSION - 1));
+    refused("core: the core's register map is of another version: take the drivers of its release");
     write("dev/uio2", &[0; 0x1000]);
     refused("core: no core at this address");
 }

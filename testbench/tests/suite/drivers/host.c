@@ -154,7 +154,7 @@ static void check_result(const sptfra_shape *shape)
     CHECK(memcmp(result.force, values + 2, 12) == 0 && memcmp(result.torque, values + 5, 12) == 0);
     CHECK(memcmp(&result.friction, values + 8, 4) == 0 && memcmp(&result.direction, values + 9, 4) == 0);
     CHECK(memcmp(result.friction_xy, values + 10, 8) == 0 && memcmp(&result.standard_error, values + 12, 4) == 0);
-    CHECK((result.contacts | result.generation << 8 | result.replaced << 16) == (int)force_words[13]);
+    CHECK((result.contacts | result.version << 8 | result.replaced << 16) == (int)force_words[13]);
     CHECK(result.field == (shape->has_field ? values + shape->words_out - 3 * shape->columns * shape->rows : NULL));
     check_separator(shape);
     for (bit = 0; bit < 16; bit++) {

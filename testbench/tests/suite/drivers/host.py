@@ -68,15 +68,15 @@ class Echo:
 def check_separation(forces, stress):
     """Marked frames, and no others, go to the solver of their version."""
     bit = np.uint16(Status.SEVERAL_CONTACTS)
-    status, generation = forces.status & ~bit, np.zeros_like(forces.generation)
+    status, version = forces.status & ~bit, np.zeros_like(forces.version)
     status[[1, 4, 6]] |= bit
-    generation[4:] = 3
-    marked = dataclasses.replace(forces, status=status, generation=generation)
+    version[4:] = 3
+    marked = dataclasses.replace(forces, status=status, version=version)
     flat = stress.reshape(len(stress), -1)
     found = list(separate(marked, stress, {0: Echo("old"), 3: Echo("new")}))
     assert [(list(indices), name) for indices, (name, _) in found] == [([1], "old"), ([4, 6], "new")]
     assert all(np.array_equal(frames, flat[indices]) for indices, (_, frames) in found)
-    (both,) = separate(dataclasses.replace(marked, generation=0 * generation), flat, Echo("one"))
+    (both,) = separate(dataclasses.replace(marked, version=0 * version), flat, Echo("one"))
     assert list(both[0]) == [1, 4, 6]
     assert list(separate(dataclasses.replace(forces, status=status & ~bit), stress, None)) == []
     refused(KeyError, lambda: list(separate(marked, stress, {0: Echo("old")})))
@@ -118,7 +118,7 @@ def main():
     seen = np.column_stack([*parts, forces.standard_error])
     assert np.array_equal(seen.view(np.uint32), expected[:, 2:13])
     assert seen.dtype == np.float32
-    counters = forces.contacts.astype(np.uint32) | forces.generation.astype(np.uint32) << 8
+    counters = forces.contacts.astype(np.uint32) | forces.version.astype(np.uint32) << 8
     assert np.array_equal(counters | forces.replaced.astype(np.uint32) << 16, expected[:, 13])
     if identity.has_field:
         assert forces.field.shape == (count, rows, columns, 3)

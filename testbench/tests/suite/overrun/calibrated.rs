@@ -30,21 +30,21 @@ fn scan(packets: &[Vec<u32>], cycle: u64, accesses: &[Access]) -> Outcome {
     outcome
 }
 
-/// Every answer is that of the bank whose generation it states, and both act.
+/// Every answer is that of the bank whose version it states, and both act.
 fn judge(packets: &[Vec<u32>], outcome: &Outcome, next: &Bank) {
     let mut model = Model::new(&subject().plan);
     let mut stated = 0;
     for exchange in &outcome.exchanges {
-        let generation = exchange.words[COUNTERS] >> 8 & 0xFF;
-        assert!(generation >= stated && generation < 2, "generation {generation} after {stated}");
-        if generation > stated {
+        let version = exchange.words[COUNTERS] >> 8 & 0xFF;
+        assert!(version >= stated && version < 2, "version {version} after {stated}");
+        if version > stated {
             model.commit(next.clone());
-            stated = generation;
+            stated = version;
         }
         let expected = model.process(&packets[exchange.packet]);
         let words: Vec<u32> =
             std::iter::once(exchange.words[0] & !DROPPED).chain(exchange.words[1..].to_vec()).collect();
-        assert_eq!(words, expected, "packet {}, generation {generation}", exchange.packet);
+        assert_eq!(words, expected, "packet {}, version {version}", exchange.packet);
     }
     assert_eq!(stated, 1, "the change is among the frames");
     assert!(!outcome.dropped.is_empty());

@@ -4,7 +4,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::registers::address;
 
-use super::super::{CONTRADICTION, OUT_OF_RANGE, errors, generation, load, perform, read_back};
+use super::super::{CONTRADICTION, OUT_OF_RANGE, errors, load, perform, read_back, version};
 use super::{random_bank_and_curve, subject};
 
 /// What no word tells alone the commit finds: the core takes a bank where the model does, and no other.
@@ -39,13 +39,13 @@ fn what_does_not_go_together_is_refused() {
         if !within {
             continue;
         }
-        let before = generation(&mut core);
+        let before = version(&mut core);
         perform(&mut core, &load(&bank, bank.crc()));
         if subject.calibration().takes(&bank) {
-            assert_eq!((errors(&mut core), generation(&mut core)), (0, (before + 1) & 0xFF), "{bank:?}");
+            assert_eq!((errors(&mut core), version(&mut core)), (0, (before + 1) & 0xFF), "{bank:?}");
             taken += 1;
         } else {
-            assert_eq!((errors(&mut core), generation(&mut core)), (CONTRADICTION, before), "{bank:?}");
+            assert_eq!((errors(&mut core), version(&mut core)), (CONTRADICTION, before), "{bank:?}");
             refused += 1;
         }
     }

@@ -38,8 +38,8 @@ fn a_tare_takes_the_curve_along() {
         let packets = [frames, rest(3), counts(subject, 6, &mut ChaCha8Rng::seed_from_u64(3))].concat();
         let answers = send(&mut core, &packets);
         let banks = [calibration.power_up.clone(), bank, tared.clone()];
-        let generations = judge(&subject.plan, &packets, &answers, &banks).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(generations.last(), Some(&2), "{generations:?}");
+        let versions = judge(&subject.plan, &packets, &answers, &banks).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(versions.last(), Some(&2), "{versions:?}");
         wait(&mut core);
         assert_eq!((errors(&mut core), read_back(&mut core, true)), (0, tared.words()));
         assert_eq!(core.read(address::CALIBRATION_CRC).expect("a reply"), tared.crc());
