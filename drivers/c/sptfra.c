@@ -112,6 +112,7 @@ int sptfra_identify(const sptfra *device, sptfra_identity *identity)
     identity->curve_in_ram = (uint8_t)FIELD(features, FEATURES__CURVE_IN_RAM);
     identity->replaceable = (uint8_t)FIELD(features, FEATURES__REPLACEABLE);
     identity->drops_frames = (uint8_t)FIELD(features, FEATURES__DROPS);
+    identity->averages_frames = (uint8_t)FIELD(features, FEATURES__AVERAGES);
     identity->clock_khz = GET(device, CLOCK);
     identity->latency_cycles = GET(device, PREDICTED_LATENCY);
     identity->interval_cycles = GET(device, PREDICTED_INTERVAL);
@@ -131,6 +132,21 @@ int sptfra_count(const sptfra *device, sptfra_counters *counters)
     counters->last_status = GET(device, LAST_STATUS);
     counters->last_latency = GET(device, LAST_LATENCY);
     counters->last_interval = GET(device, LAST_INTERVAL);
+    return SPTFRA_OK;
+}
+
+int sptfra_set_smoothing(const sptfra *device, uint32_t k)
+{
+    if (!device->has_registers) {
+        return SPTFRA_NO_REGISTERS;
+    }
+    if (!FIELD(GET(device, FEATURES), FEATURES__AVERAGES)) {
+        return SPTFRA_NO_SMOOTHING;
+    }
+    if (k > 8u) {
+        return SPTFRA_OUT_OF_RANGE;
+    }
+    SET(device, SMOOTHING, k);
     return SPTFRA_OK;
 }
 

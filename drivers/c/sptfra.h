@@ -45,7 +45,8 @@ enum {
     SPTFRA_DROPS = -20,            /* the core drops frames that come too fast: send it one at a time */
     SPTFRA_CONTRADICTION = -21,    /* the words of a bank do not go together: nothing has changed */
     SPTFRA_BAD_FILE = -22,         /* a file that is no calibration: nothing has changed */
-    SPTFRA_BAD_SHAPE = -23         /* words_out is not what taxels and field take */
+    SPTFRA_BAD_SHAPE = -23,        /* words_out is not what taxels and field take */
+    SPTFRA_NO_SMOOTHING = -24      /* the design averages no frames */
 };
 
 /* What went wrong, in words. */
@@ -115,6 +116,7 @@ typedef struct {
     uint8_t curve_in_ram;       /* sptfra_load_bank_and_curve */
     uint8_t replaceable;        /* dead taxels that a bank has room for */
     uint8_t drops_frames;       /* those that find no room */
+    uint8_t averages_frames;    /* sptfra_set_smoothing */
     uint32_t clock_khz, latency_cycles, interval_cycles; /* as predicted */
     float full_scale_pa;
 } sptfra_identity;
@@ -128,6 +130,9 @@ typedef struct {
 } sptfra_counters;
 
 int sptfra_count(const sptfra *device, sptfra_counters *counters);
+
+/* Averages frames with the weight 2^-k, 8 at most, from the next frame on; 0 averages nothing. */
+int sptfra_set_smoothing(const sptfra *device, uint32_t k);
 
 /* Resets the core without cutting a packet, see docs/reference/registers.md. Frames inside are lost; the packet going out still
  * needs a transfer that takes it. With a queue SPTFRA_QUEUE_ONLY: sptfra_queue_recover does it. */

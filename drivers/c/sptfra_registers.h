@@ -77,6 +77,9 @@ extern "C" {
 #define SPTFRA__FEATURES__CURVE_IN_RAM_bm 0x40
 #define SPTFRA__FEATURES__CURVE_IN_RAM_bp 6
 #define SPTFRA__FEATURES__CURVE_IN_RAM_bw 1
+#define SPTFRA__FEATURES__AVERAGES_bm 0x80
+#define SPTFRA__FEATURES__AVERAGES_bp 7
+#define SPTFRA__FEATURES__AVERAGES_bw 1
 #define SPTFRA__FEATURES__STREAM_BYTES_bm 0xff00
 #define SPTFRA__FEATURES__STREAM_BYTES_bp 8
 #define SPTFRA__FEATURES__STREAM_BYTES_bw 8
@@ -222,6 +225,11 @@ extern "C" {
 #define SPTFRA__FRAMES_DROPPED__COUNT_bp 0
 #define SPTFRA__FRAMES_DROPPED__COUNT_bw 32
 
+// reg - sptfra::SMOOTHING
+#define SPTFRA__SMOOTHING__K_bm 0xf
+#define SPTFRA__SMOOTHING__K_bp 0
+#define SPTFRA__SMOOTHING__K_bw 4
+
 // reg - sptfra::CALIBRATION
 #define SPTFRA__CALIBRATION__WORDS_bm 0xffff
 #define SPTFRA__CALIBRATION__WORDS_bp 0
@@ -346,7 +354,8 @@ typedef struct __attribute__ ((__packed__)) {
     uint32_t LAST_LATENCY;
     uint32_t LAST_INTERVAL;
     uint32_t FRAMES_DROPPED;
-    uint8_t RESERVED_6c_7f[0x14];
+    uint32_t SMOOTHING;
+    uint8_t RESERVED_70_7f[0x10];
     uint32_t CALIBRATION;
     uint32_t CALIBRATION_OFFSET_LIMIT;
     uint32_t CALIBRATION_STEPS_LOW;

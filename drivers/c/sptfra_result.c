@@ -31,6 +31,7 @@ const char *sptfra_error(int code)
     case SPTFRA_QUEUE_ONLY: return "the DMA goes by descriptors: use the queue (sptfra_queue.h)";
     case SPTFRA_NO_QUEUE: return "the DMA has no descriptors: make the block design with the word queue";
     case SPTFRA_BAD_SHAPE: return "words_out is not what taxels and field take";
+    case SPTFRA_NO_SMOOTHING: return "the core averages no frames: its design needs smoothing";
     default: return "unknown code";
     }
 }

@@ -116,6 +116,15 @@ class Sptfra:
         self._follow_number()
         self._failed = False
 
+    def set_smoothing(self, k):
+        """Averages frames with the weight 2**-k from the next frame on; 0 averages nothing. Raises RuntimeError where the
+        core averages none."""
+        if not self.identity.averages_frames:
+            raise RuntimeError("the core averages no frames: its design needs smoothing and control = true")
+        if not 0 <= k <= 8:
+            raise ValueError(f"k is {k}: 0 to 8")
+        self._core.write(Register.SMOOTHING, k)
+
     def enable_interrupts(self, events):
         """Lets these events, a combination of `Event`, raise the core's interrupt; none of the others."""
         self._core.write(Register.INTERRUPT_ENABLE, int(events))

@@ -32,6 +32,8 @@ class Identity:
     replaceable: int
     #: Whether frames that find no room are dropped, and the source never held.
     drops_frames: bool
+    #: Whether frames are averaged: see `Sptfra.set_smoothing`.
+    averages_frames: bool
     #: What a sample of a frame is: float32, int16 or uint16.
     samples: np.dtype
     clock_mhz: float
@@ -68,6 +70,7 @@ class Identity:
             curve_in_ram=bool(features & 64),
             replaceable=features >> 20 & 15,
             drops_frames=bool(features & 32),
+            averages_frames=bool(features & 128),
             stream_bits=8 * (features >> 8 & 0xFF) or 32,
             samples=np.dtype((np.float32, np.int16, np.uint16)[features >> 16 & 3]),
             clock_mhz=core.read(Register.CLOCK) / 1e3,
@@ -96,6 +99,7 @@ class Identity:
             curve_in_ram=False,
             replaceable=0,
             drops_frames=metadata["overrun"] == "drop",
+            averages_frames=False,
             stream_bits=metadata["stream_bits"],
             samples=np.dtype(metadata["samples"]),
             clock_mhz=metadata["clock_mhz"],

@@ -1,6 +1,6 @@
 //! Exponential moving average of each taxel over frames that follow each other.
 //!
-//! The average moves by `2^-k` of the difference to a new frame. Where any taxel differs from its average by more than
+//! The average moves by `2^-k` of the difference to a new frame. Where any living taxel differs from its average by more than
 //! [`RESTART`] standard deviations of the noise, the frame itself is the new average of all taxels. In a steady state noise of
 //! standard deviation σ falls to `σ sqrt(2^-k / (2 - 2^-k))`.
 
@@ -33,11 +33,14 @@ impl Smoothing {
         Self { weight: 0.5_f64.powi(k as i32), limit: RESTART * noise }
     }
 
-    /// Takes a good frame into the average and puts the average in its place.
-    pub fn take(&self, average: &mut Average, frame: &mut [f64]) {
+    /// Takes a good frame into the average and puts the average in its place. Steps of `dead` taxels, whose noise is that of
+    /// the sum in their place, restart nothing.
+    pub fn take(&self, average: &mut Average, frame: &mut [f64], dead: &[usize]) {
         let limit = self.limit * frame.iter().fold(0.0_f64, |largest, stress| largest.max(stress.abs()));
-        let pairs = || average.stress.iter().zip(&*frame);
-        if average.stress.len() != frame.len() || pairs().any(|(average, stress)| (stress - average).abs() > limit) {
+        let pairs = average.stress.iter().zip(&*frame).enumerate();
+        let mut living = pairs.filter(|(taxel, _)| !dead.contains(taxel));
+        if average.stress.len() != frame.len() || living.any(|(_, (average, stress))| (stress - average).abs() > limit)
+        {
             average.stress.clear();
             average.stress.extend_from_slice(frame);
             return;

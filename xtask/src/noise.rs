@@ -85,7 +85,7 @@ fn smoothed(design: &Design, frames: &[SceneFrame], percent: f64) -> Result<Vec<
             for (smoothing, average, last) in &mut averages {
                 last.clone_from(&read);
                 if let Some(smoothing) = smoothing {
-                    smoothing.take(average, last);
+                    smoothing.take(average, last, &[]);
                 }
             }
         }

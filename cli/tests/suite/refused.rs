@@ -141,12 +141,6 @@ fn the_papers_plan_has_no_joint_estimator() {
 }
 
 #[test]
-fn a_key_that_software_alone_has_is_refused() {
-    let keys = "depth_mm = 3.0\nsmoothing = 4";
-    check_design(&changed("depth_mm = 3.0", keys), &["[sensor] smoothing", "software", "remove the key"]);
-}
-
-#[test]
 fn widths_resolve_the_noise_floor() {
     let text = "depth_mm = 3.0\n[algorithm]\nnoise_floor_pa = 0.5\n[hardware]\ndata_bits = 16\nfull_scale_pa = 1e6";
     check_design(&changed("depth_mm = 3.0", text), &["data_bits = 16", "noise floor of 0.5 Pa", "full_scale_pa"]);

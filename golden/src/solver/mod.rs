@@ -296,6 +296,23 @@ impl Solver {
         Ok(solution)
     }
 
+    /// Solves frames that follow each other, as [`Solver::solve_into`] does.
+    ///
+    /// # Errors
+    ///
+    /// As [`Solver::solve`], for any of the frames.
+    pub fn solve_in_order<F: AsRef<[f64]>>(
+        &self,
+        frames: impl IntoIterator<Item = F>,
+    ) -> Result<Vec<Solution>, SolverError> {
+        let mut workspace = self.workspace();
+        let mut solve = |frame: F| {
+            let mut solution = Solution::zeros(Status::default(), 0);
+            self.solve_into(&mut workspace, frame.as_ref(), &mut solution).map(|()| solution)
+        };
+        frames.into_iter().map(&mut solve).collect()
+    }
+
     /// Records of bodies in each solution: the design's `contacts`, or 0 where that is 1.
     pub fn records(&self) -> usize {
         self.finder.as_ref().map_or(0, Finder::records)

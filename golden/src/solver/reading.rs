@@ -94,8 +94,8 @@ impl Reader {
         Ok(self.judge(status, b))
     }
 
-    /// Converts a frame to pascals within the full scale, a dead taxel to 0. Its status is [`Status::NOT_FINITE`] where it
-    /// is a bad one.
+    /// Converts a frame to pascals within the full scale, replaces dead taxels and removes crosstalk. Its status is
+    /// [`Status::NOT_FINITE`] where it is a bad one.
     pub(crate) fn decode(&self, frame: &[f64], b: &mut [f64]) -> Result<Status, SolverError> {
         let taxels = self.taxels();
         if frame.len() != taxels {
@@ -114,8 +114,15 @@ impl Reader {
         if b.iter().any(|stress| stress.abs() >= self.flagged) || frame.iter().enumerate().any(beyond) {
             status.insert(Status::SATURATED);
         }
-        for stress in b {
-            *stress = self.clamped(*stress);
+        self.clamp(b);
+        self.dead.replace(b);
+        if self.dead.taxels().iter().any(|&taxel| b[taxel].abs() > self.full_scale) {
+            status.insert(Status::SATURATED);
+        }
+        self.clamp(b);
+        if let Some(crosstalk) = &self.crosstalk {
+            crosstalk.remove(b);
+            self.clamp(b);
         }
         Ok(status)
     }
@@ -123,27 +130,20 @@ impl Reader {
     /// Takes a decoded frame into the average of its stream, which takes its place. A bad frame leaves the average as it was.
     pub(crate) fn average(&self, average: &mut Average, status: Status, b: &mut [f64]) {
         if let Some(smoothing) = self.smoothing.filter(|_| !status.contains(Status::NOT_FINITE)) {
-            smoothing.take(average, b);
+            smoothing.take(average, b, self.dead.taxels());
         }
     }
 
-    fn clamped(&self, stress: f64) -> f64 {
-        stress.clamp(-self.full_scale, self.full_scale)
+    fn clamp(&self, b: &mut [f64]) {
+        for stress in b {
+            *stress = stress.clamp(-self.full_scale, self.full_scale);
+        }
     }
 
-    /// Replaces dead taxels, removes crosstalk and analyses a decoded frame.
-    pub(crate) fn judge(&self, mut status: Status, b: &mut DVector<f64>) -> Reading {
+    /// Analyses a decoded frame.
+    pub(crate) fn judge(&self, mut status: Status, b: &DVector<f64>) -> Reading {
         if status.contains(Status::NOT_FINITE) {
             return Reading::Nothing(status);
-        }
-        self.dead.replace(b.as_mut_slice());
-        if self.dead.taxels().iter().any(|&taxel| b[taxel].abs() > self.full_scale) {
-            status.insert(Status::SATURATED);
-        }
-        b.apply(|stress| *stress = self.clamped(*stress));
-        if let Some(crosstalk) = &self.crosstalk {
-            crosstalk.remove(b.as_mut_slice());
-            b.apply(|stress| *stress = self.clamped(*stress));
         }
         let contact = self.analyse(b);
         if !contact.touched {

@@ -98,7 +98,7 @@ impl Solver {
         self.fit(workspace);
         let status = self.reader.decode(frame, workspace.b.as_mut_slice())?;
         self.reader.average(&mut workspace.average, status, workspace.b.as_mut_slice());
-        let reading = self.reader.judge(status, &mut workspace.b);
+        let reading = self.reader.judge(status, &workspace.b);
         self.solve_reading(workspace, &reading, solution);
         Ok(())
     }

@@ -5,11 +5,8 @@
 // of two banks of the lanes' operand memories: taxel by taxel, or folded into parity classes.
 //
 // Beat to stress: as of sptfra_samples, a beat a cycle; what fills a frame's last beat behind its samples is ignored.
-// Where taxels are dead, a frame is complete before its first stress goes on: see sptfra_replace. A frame is accepted
-// while a bank is free and CeAn has finished the frame before. Frames of a wrong length are swallowed up to their TLAST
-// and marked.
-//
-// With CALIBRATED a frame takes its constants from the calibration bank that is active at its first beat.
+// A frame is accepted while a bank is free and CeAn has finished the frame before. Frames of a wrong length are
+// swallowed up to their TLAST and marked. Calibration bank and smoothing are those at a frame's first beat.
 
 `default_nettype none
 
@@ -49,9 +46,10 @@ module sptfra_bz #(
     parameter [4:0] REPLACED_SHIFT = 5'd17,
     parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
         = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
-    // Crosstalk: see sptfra_corrections
+    // Crosstalk, smoothing: see sptfra_corrections
     parameter CROSSTALK = 0,
     parameter [53:0] CROSSTALK_FACTORS = 54'd0,
+    parameter [22:0] SMOOTHING = 23'd0,
     // Prefix of the ROM file names, and what they begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
@@ -97,6 +95,7 @@ module sptfra_bz #(
     output wire frame_ready, // a whole frame waits
     input  wire frame_start, // the lanes begin with it
     input  wire frame_release, // its bank is free again
+    input  wire [3:0] smoothing, // see sptfra_smoothing
     // Calibration: {active bank, version, contact, noise}; a frame inside began with the other bank
     input  wire [67:0] calibration_acting,
     output wire calibration_old_in_use,
@@ -122,7 +121,7 @@ module sptfra_bz #(
         if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
             sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
         end
-        if ((SAMPLES != 1) && ((REPLACEABLE != 0) || (CROSSTALK != 0) || (CALIBRATED != 0))) begin : gen_check_samples
+        if ((SAMPLES != 1) && ((SMOOTHING != 0) || ((REPLACEABLE | CROSSTALK | CALIBRATED) != 0))) begin : gen_check
             sptfra_error_samples_go_one_by_one_where_frames_are_corrected_or_calibrated invalid ();
         end
         if ((EXPECTED_STAGES != 0) && (EXPECTED_STAGES != STAGES)) begin : gen_check_stages
@@ -318,6 +317,7 @@ module sptfra_bz #(
         .REPLACED_TAXELS   (REPLACED_TAXELS),
         .CROSSTALK         (CROSSTALK),
         .CROSSTALK_FACTORS (CROSSTALK_FACTORS),
+        .SMOOTHING         (SMOOTHING),
         .ROM_DIR           (ROM_DIR),
         .ROM_NAME          (ROM_NAME)
     ) writer (
@@ -331,6 +331,7 @@ module sptfra_bz #(
         .in_not_finite    (read_not_finite),
         .taxel_ahead      (taxel_ahead),
         .map              (map),
+        .smoothing        (smoothing),
         .busy             (writer_busy),
         .replace_busy     (replace_busy),
         .write_valid      (write_valid),

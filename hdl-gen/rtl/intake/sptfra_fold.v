@@ -15,6 +15,8 @@ module sptfra_fold #(
     parameter COLUMNS = 10,
     parameter ROWS = 10,
     parameter SAMPLES = 1,
+    // Of a beat of one taxel, its stress and the average of it, or the stress alone
+    parameter CANDIDATES = 1,
     // 4: folded into parity classes; 1: as they are, in the order of taxels
     parameter WAYS = 4,
     // Bits of a stress, and of a class: as many, or two more, or beyond
@@ -35,7 +37,8 @@ module sptfra_fold #(
     // The frame as it comes
     input  wire beat_valid,
     input  wire [BEAT_WIDTH-1:0] beat,
-    input  wire [SAMPLES*STRESS_BITS-1:0] stresses,
+    input  wire [CANDIDATES*SAMPLES*STRESS_BITS-1:0] stresses,
+    input  wire averaged, // the frame is made of averages, from the first turn on
     input  wire [COUNT_WIDTH-1:0] written, // beats whose quads may have their turn
     input  wire whole, // all quads may
     input  wire [4:0] exponent, // two enabled cycles after the first turn
@@ -136,14 +139,16 @@ module sptfra_fold #(
     generate
         for (member = 0; member < WAYS; member = member + 1) begin : gen_members
             localparam UPPER = ((member == 1) || (member == 2)) ? 1 : 0;
-            wire [STRESS_BITS-1:0] kept_2;
+            wire [CANDIDATES*STRESS_BITS-1:0] both_2;
+            wire [STRESS_BITS-1:0] kept_2
+                = averaged ? both_2[(CANDIDATES-1)*STRESS_BITS +: STRESS_BITS] : both_2[STRESS_BITS-1:0];
 
             sptfra_frame_memory #(
                 .SAMPLES (SAMPLES),
                 .BEATS   (BEATS),
                 .FIRST   ((UPPER != 0) ? 0 : LOWER_BEAT),
                 .KEPT    ((UPPER != 0) ? UPPER_BEATS : BEATS - LOWER_BEAT),
-                .WIDTH   (STRESS_BITS)
+                .WIDTH   (CANDIDATES * STRESS_BITS)
             ) frame (
                 .clock          (clock),
                 .write_enable   (beat_valid),
@@ -151,7 +156,7 @@ module sptfra_fold #(
                 .write_stresses (stresses),
                 .read_enable    (advance),
                 .taxel          (taxels[INDEX_WIDTH*member +: INDEX_WIDTH]),
-                .stress         (kept_2)
+                .stress         (both_2)
             );
 
             if (SCALED != 0) begin : gen_scale

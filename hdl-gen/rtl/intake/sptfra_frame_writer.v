@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Frame writer of Bz: replaces dead taxels, keeps a frame's stresses, writes them to the lanes, scaled and folded, and
-// shows them to CeAn one by one.
+// Frame writer of Bz: corrects a frame, keeps its stresses, writes them to the lanes, scaled and folded, and shows them
+// to CeAn one by one.
 //
-// Beat to CeAn: the same cycle, with several samples a beat 3 cycles and a taxel a cycle. Beat to write: 5 cycles, with
-// SCALED see sptfra_frame_scale; with dead taxels later by what sptfra_replace takes.
+// Beat to CeAn: as of sptfra_taxel_stream or sptfra_smoothing. Beat to write: 5 cycles, with SCALED see
+// sptfra_frame_scale; with SMOOTHING the lanes wait for the frame's end. All later by what sptfra_corrections takes.
 
 `default_nettype none
 
@@ -32,6 +32,8 @@ module sptfra_frame_writer #(
     // Crosstalk: see sptfra_corrections
     parameter CROSSTALK = 0,
     parameter [53:0] CROSSTALK_FACTORS = 54'd0,
+    // Smoothing: see sptfra_corrections
+    parameter [22:0] SMOOTHING = 23'd0,
     // Prefix of the ROM file names, and what they begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
@@ -54,6 +56,7 @@ module sptfra_frame_writer #(
     // Of dead taxels: see sptfra_replace
     input  wire [TAXEL_WIDTH-1:0] taxel_ahead,
     input  wire [34*PLACES+8:0] map,
+    input  wire [3:0] smoothing, // see sptfra_smoothing
     output wire replace_busy, // from a frame's last beat in to its last stress out
     output wire busy, // a frame's last stress has come, and not all that is made of it
     // Operand memories, class 0 in the lowest bits
@@ -99,10 +102,12 @@ module sptfra_frame_writer #(
         end
     endgenerate
 
-    // ---- Dead taxels, crosstalk
-    wire takes, ends, bad_length_now, replaced, crosstalk_busy;
-    wire [27*SAMPLES-1:0] stresses;
+    // ---- Dead taxels, crosstalk, smoothing
+    localparam CANDIDATES = (SMOOTHING != 0) ? 2 : 1; // stresses, and averages with them
+    wire takes, ends, bad_length_now, replaced, corrections_busy, decided, averaged, over;
+    wire [27*SAMPLES*CANDIDATES-1:0] stresses;
     wire [SAMPLES-1:0] saturated, not_finite;
+    wire [29:0] smoothed;
 
     sptfra_corrections #(
         .COLUMNS           (COLUMNS),
@@ -116,28 +121,35 @@ module sptfra_frame_writer #(
         .REPLACED_TAXELS   (REPLACED_TAXELS),
         .CROSSTALK         (CROSSTALK),
         .CROSSTALK_FACTORS (CROSSTALK_FACTORS),
+        .SMOOTHING         (SMOOTHING),
         .ROM_DIR           (ROM_DIR),
         .ROM_NAME          (ROM_NAME)
     ) corrections (
-        .clock          (clock),
-        .reset          (reset),
-        .in_takes       (in_takes),
-        .in_ends        (in_ends),
-        .in_bad_length  (in_bad_length),
-        .in_stresses    (in_stresses),
-        .in_saturated   (in_saturated),
-        .in_not_finite  (in_not_finite),
-        .taxel_ahead    (taxel_ahead),
-        .map            (map),
-        .replace_busy   (replace_busy),
-        .crosstalk_busy (crosstalk_busy),
-        .takes          (takes),
-        .ends           (ends),
-        .bad_length     (bad_length_now),
-        .stresses       (stresses),
-        .saturated      (saturated),
-        .not_finite     (not_finite),
-        .replaced       (replaced)
+        .clock         (clock),
+        .reset         (reset),
+        .in_takes      (in_takes),
+        .in_ends       (in_ends),
+        .in_bad_length (in_bad_length),
+        .in_stresses   (in_stresses),
+        .in_saturated  (in_saturated),
+        .in_not_finite (in_not_finite),
+        .taxel_ahead   (taxel_ahead),
+        .map           (map),
+        .frame_opens   (frame_opens),
+        .smoothing     (smoothing),
+        .replace_busy  (replace_busy),
+        .busy          (corrections_busy),
+        .takes         (takes),
+        .ends          (ends),
+        .bad_length    (bad_length_now),
+        .stresses      (stresses),
+        .saturated     (saturated),
+        .not_finite    (not_finite),
+        .replaced      (replaced),
+        .decided       (decided),
+        .averaged      (averaged),
+        .over          (over),
+        .smoothed      (smoothed)
     );
 
     // ---- The frame as it comes
@@ -150,12 +162,12 @@ module sptfra_frame_writer #(
     wire shown_replaced;
     wire [26:0] magnitude = stress[26] ? -stress : stress;
     wire folded;
-    wire told; // CeAn has the frame's flags
-    wire over = folded && told; // all is made of the frame
+    reg told_before;
     wire [SAMPLES-1:0] counted = (written == LAST_BEAT) ? REST_MASK[SAMPLES-1:0] : {SAMPLES{1'b1}};
     wire [31:0] written_wide = {{(32-COUNT_WIDTH){1'b0}}, written};
 
-    assign busy = ended || crosstalk_busy;
+    assign over = folded && (frame_done || told_before); // the lanes have it all, and CeAn its flags
+    assign busy = ended || corrections_busy;
     assign frame_saturated = seen_saturated || (takes && ((saturated & counted) != {SAMPLES{1'b0}}));
     assign frame_not_finite = seen_not_finite || (takes && ((not_finite & counted) != {SAMPLES{1'b0}}));
     assign frame_bad_length = ends ? bad_length_now : bad_length;
@@ -172,8 +184,12 @@ module sptfra_frame_writer #(
         if (ends) begin
             ended <= 1'b1;
         end
+        if (frame_done) begin
+            told_before <= 1'b1;
+        end
         if (reset || over) begin
             ended <= 1'b0;
+            told_before <= 1'b0;
             written <= {COUNT_WIDTH{1'b0}};
         end
         if (reset || frame_done) begin
@@ -183,29 +199,41 @@ module sptfra_frame_writer #(
         end
     end
 
-    // ---- Its scale
+    // ---- Its scale: before it is known what it is made of, that of each
     wire whole; // the lanes may have all of it
+    genvar candidate;
 
     generate
         if (SCALED != 0) begin : gen_scale
-            sptfra_frame_scale #(
-                .SAMPLES      (SAMPLES),
-                .STRESS_BOUND (STRESS_BOUND)
-            ) scale (
-                .clock      (clock),
-                .reset      (reset),
-                .beat_valid (takes),
-                .stresses   (stresses),
-                .counted    (counted),
-                .ends       (ends),
-                .bad_length (bad_length_now),
-                .restart    (over),
-                .whole      (whole),
-                .scaled     (scaled),
-                .exponent   (exponent)
-            );
+            wire [CANDIDATES-1:0] wholes, found;
+            wire [5*CANDIDATES-1:0] exponents;
+
+            assign whole = wholes[0];
+            assign scaled = found[0];
+            assign exponent = averaged ? exponents[5*(CANDIDATES-1) +: 5] : exponents[4:0];
+
+            for (candidate = 0; candidate < CANDIDATES; candidate = candidate + 1) begin : gen_candidates
+                sptfra_frame_scale #(
+                    .SAMPLES      (SAMPLES),
+                    .STRESS_BOUND (STRESS_BOUND)
+                ) scale (
+                    .clock      (clock),
+                    .reset      (reset),
+                    .beat_valid (takes),
+                    .stresses   (stresses[27*SAMPLES*candidate +: 27*SAMPLES]),
+                    .counted    (counted),
+                    .ends       (ends),
+                    .bad_length (bad_length_now),
+                    .restart    (over),
+                    .whole      (wholes[candidate]),
+                    .scaled     (found[candidate]),
+                    .exponent   (exponents[5*candidate +: 5])
+                );
+            end
+
+            wire _unused_whole = &{1'b0, decided, wholes, found};
         end else begin : gen_full_scale
-            assign whole = ended;
+            assign whole = (SMOOTHING != 0) ? decided : ended;
             assign scaled = 1'b0;
             assign exponent = 5'd0;
             wire _unused_bound = &{1'b0, STRESS_BOUND};
@@ -213,12 +241,12 @@ module sptfra_frame_writer #(
     endgenerate
 
     // ---- To the lanes, quad by quad
-    wire [STRESS_BITS*SAMPLES-1:0] narrow_stresses;
+    wire [STRESS_BITS*SAMPLES*CANDIDATES-1:0] narrow_stresses;
     wire frame_written;
     genvar sample;
 
     generate
-        for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_narrow
+        for (sample = 0; sample < SAMPLES * CANDIDATES; sample = sample + 1) begin : gen_narrow
             assign narrow_stresses[STRESS_BITS*sample +: STRESS_BITS] = stresses[27*sample +: STRESS_BITS];
         end
     endgenerate
@@ -227,6 +255,7 @@ module sptfra_frame_writer #(
         .COLUMNS     (COLUMNS),
         .ROWS        (ROWS),
         .SAMPLES     (SAMPLES),
+        .CANDIDATES  (CANDIDATES),
         .WAYS        (WAYS),
         .STRESS_BITS (STRESS_BITS),
         .DATA_BITS   (DATA_BITS),
@@ -238,7 +267,8 @@ module sptfra_frame_writer #(
         .beat_valid    (takes),
         .beat          (written_wide[BEAT_WIDTH-1:0]),
         .stresses      (narrow_stresses),
-        .written       ((SCALED != 0) ? {COUNT_WIDTH{1'b0}} : written),
+        .averaged      (averaged),
+        .written       (((SCALED != 0) || (SMOOTHING != 0)) ? {COUNT_WIDTH{1'b0}} : written),
         .whole         (whole),
         .exponent      (exponent),
         .folded        (folded),
@@ -252,67 +282,32 @@ module sptfra_frame_writer #(
 
     // ---- To CeAn, taxel by taxel
     generate
-        if (SAMPLES == 1) begin : gen_at_once
-            assign stress_valid = takes;
-            assign stress = $signed(stresses);
-            assign shown_replaced = replaced;
-            assign frame_done = ends;
-            assign told = ended;
-        end else begin : gen_one_by_one
-            localparam SAMPLE_WIDTH = $clog2(SAMPLES);
-            localparam INDEX_WIDTH = BEAT_WIDTH + SAMPLE_WIDTH;
-            localparam [31:0] LAST_WIDE = TAXELS - 1;
-            localparam TURN_TO_STRESS = 2; // of the memory
-            reg [INDEX_WIDTH-1:0] taxel;
-            reg all_shown;
-            reg [TURN_TO_STRESS:1] shows;
-            reg [TURN_TO_STRESS:1] shows_last;
-            reg is_told;
-            wire last_taxel = (taxel == LAST_WIDE[INDEX_WIDTH-1:0]);
-            wire [31:0] beat_needed = {{(32-BEAT_WIDTH){1'b0}}, taxel[SAMPLE_WIDTH +: BEAT_WIDTH]};
-            wire show = (ended || (!last_taxel && (beat_needed < written_wide))) && !all_shown;
-            wire [26:0] kept;
+        if (SMOOTHING != 0) begin : gen_smoothed
+            assign {stress_valid, stress, shown_replaced, frame_done} = smoothed;
+            wire _unused_replaced = &{1'b0, replaced};
+        end else begin : gen_as_they_come
+            wire [26:0] shown;
 
-            assign stress_valid = shows[TURN_TO_STRESS];
-            assign stress = $signed(kept);
-            assign shown_replaced = replaced; // never
-            assign frame_done = shows_last[TURN_TO_STRESS];
-            assign told = frame_done || is_told;
-
-            sptfra_frame_memory #(
-                .SAMPLES (SAMPLES),
-                .BEATS   (BEATS),
-                .WIDTH   (27)
-            ) frame (
-                .clock          (clock),
-                .write_enable   (takes),
-                .write_beat     (written_wide[BEAT_WIDTH-1:0]),
-                .write_stresses (stresses),
-                .read_enable    (1'b1),
-                .taxel          (taxel),
-                .stress         (kept)
+            sptfra_taxel_stream #(
+                .TAXELS  (TAXELS),
+                .SAMPLES (SAMPLES)
+            ) taxel_stream (
+                .clock        (clock),
+                .reset        (reset),
+                .takes        (takes),
+                .beat         (written),
+                .stresses     (stresses[27*SAMPLES-1:0]),
+                .ends         (ends),
+                .ended        (ended),
+                .restart      (over),
+                .stress_valid (stress_valid),
+                .stress       (shown),
+                .done         (frame_done)
             );
 
-            always @(posedge clock) begin
-                shows <= {shows[1], show};
-                shows_last <= {shows_last[1], show && last_taxel};
-                if (show) begin
-                    taxel <= taxel + 1'b1;
-                    all_shown <= last_taxel;
-                end
-                if (frame_done) begin
-                    is_told <= 1'b1;
-                end
-                if (reset || over) begin
-                    taxel <= {INDEX_WIDTH{1'b0}};
-                    all_shown <= 1'b0;
-                    is_told <= 1'b0;
-                end
-                if (reset) begin
-                    shows <= 2'd0;
-                    shows_last <= 2'd0;
-                end
-            end
+            assign stress = $signed(shown);
+            assign shown_replaced = replaced;
+            wire _unused_smoothed = &{1'b0, smoothed};
         end
     endgenerate
 

@@ -10,9 +10,11 @@ use crate::plan::counts::{CountsPlan, EXPONENT_BITS};
 use crate::plan::crosstalk::{CrosstalkPlan, FACTOR_BITS};
 use crate::plan::curve::{self, CurvePlan, SEGMENT_BITS};
 use crate::plan::dead::{DeadPlan, WEIGHT_BITS};
+use crate::plan::format::address_bits;
 use crate::plan::gain::{GAIN_BITS, LARGEST_NUMBER};
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
+use crate::plan::smoothing;
 use crate::plan::streams::Streams;
 use crate::timing::durations::Arrival;
 use crate::timing::latency;
@@ -65,6 +67,10 @@ pub fn parameters(plan: &Plan) -> Parameters {
         Some(crosstalk) => of_crosstalk(parameters, crosstalk),
         None => parameters,
     };
+    let parameters = match &plan.smoothing {
+        Some(of) => parameters.unsigned("SMOOTHING", smoothing::RESTART_BITS, of.restart()),
+        None => parameters,
+    };
     let parameters = match &plan.calibration {
         Some(of) => of_calibration(parameters, of),
         None => parameters,
@@ -96,7 +102,9 @@ pub fn arrival(plan: &Plan) -> Arrival {
     let there = |taxel: usize| (taxel / samples) as u64 + beat_to_stress(plan) + dead + crosstalk;
     let last = there(plan.taxels() - 1);
     // A taxel a cycle.
-    let last_stress = if samples == 1 {
+    let last_stress = if plan.smoothing.is_some() {
+        last + latency::smoothed_to_cean(plan.taxels())
+    } else if samples == 1 {
         last
     } else {
         (0..plan.taxels()).fold(0, |before, taxel| (there(taxel) + 1).max(before + 1)) + latency::TAXEL_TO_CEAN
@@ -104,8 +112,12 @@ pub fn arrival(plan: &Plan) -> Arrival {
     // Each element when its last taxel is there, quads from the middle rows on; where frames are scaled, when the scale is.
     let (columns, rows) = if plan.ways() > 1 { (sensor.columns / 2, sensor.rows / 2) } else { (0, 0) };
     let last_taxels = (rows..sensor.rows).flat_map(|y| (columns..sensor.columns).map(move |x| y * sensor.columns + x));
-    let whole = last + latency::frame_scale(samples);
-    let element = |taxel| if plan.scales_frames() { whole } else { there(taxel) + 1 };
+    let element = |taxel| match (plan.scales_frames(), &plan.smoothing) {
+        (true, Some(_)) => last + latency::SMOOTHING + latency::frame_scale(samples),
+        (true, None) => last + latency::frame_scale(samples),
+        (false, Some(_)) => last + latency::SMOOTHING + latency::SMOOTHING_DECIDED,
+        (false, None) => there(taxel) + 1,
+    };
     Arrival {
         taken: plan.taxels().div_ceil(samples) as u64 - 1,
         elements: last_taxels.map(element).collect(),
@@ -114,7 +126,7 @@ pub fn arrival(plan: &Plan) -> Arrival {
     }
 }
 
-/// A multiplier each for a count's slope, a stress's gain, each place for a dead taxel and crosstalk.
+/// A multiplier each for a count's slope, a stress's gain, each place for a dead taxel, crosstalk and smoothing.
 pub fn cost(plan: &Plan) -> BlockCost {
     let (streams, stress) = (plan.streams(), plan.factors().outside_bits());
     let (taxels, places) = (plan.taxels(), plan.places_for_dead());
@@ -147,13 +159,18 @@ pub fn cost(plan: &Plan) -> BlockCost {
     let beats = |taxels: usize| taxels.div_ceil(conversions);
     let half = if plan.ways() > 1 { plan.design.sensor.rows.div_ceil(2) } else { plan.design.sensor.rows };
     let kept = beats(half * plan.design.sensor.columns);
-    memories.push(memory("frame by elements", plan.ways() * conversions, kept, stress, false));
+    let candidates = if plan.smoothing.is_some() { 2 } else { 1 };
+    memories.push(memory("frame by elements", plan.ways() * conversions, kept, candidates * stress, false));
+    if plan.smoothing.is_some() {
+        memories.push(memory("averages", 1, 2 << address_bits(taxels), smoothing::WORD_BITS, false));
+    }
     if conversions > 1 {
         memories.push(memory("frame by taxels", conversions, beats(taxels), LONG_BITS, false));
     }
     let gain = plan.counts.is_some() || plan.calibration.is_some();
     let curve = plan.design.input.curve.is_some();
-    let dsp = conversions * (usize::from(gain) + usize::from(curve)) + places + usize::from(plan.crosstalk.is_some());
+    let dsp = conversions * (usize::from(gain) + usize::from(curve)) + places;
+    let dsp = dsp + usize::from(plan.crosstalk.is_some()) + usize::from(plan.smoothing.is_some());
     BlockCost::new("Bz", &["sptfra_bz"], dsp).with(memories)
 }
 

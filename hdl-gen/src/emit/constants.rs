@@ -31,7 +31,7 @@ fn constant(module: &str, name: &str) -> i64 {
 fn modules_and_model_have_the_same_constants() {
     let one = 1 << FRICTION_FRACTION;
     let expected: [(&str, &str, i64); 29] = [
-        ("sptfra_frame_writer", "TURN_TO_STRESS", TAXEL_TO_CEAN as i64),
+        ("sptfra_taxel_stream", "TURN_TO_STRESS", TAXEL_TO_CEAN as i64),
         ("sptfra_spmv_collector", "TAKE_TO_BUS", VISIT_TO_BUS as i64),
         ("sptfra_direction", "CENTROID_FRACTION", line::CENTROID_FRACTION.into()),
         ("sptfra_direction", "PITCH_FRACTION", line::PITCH_FRACTION.into()),

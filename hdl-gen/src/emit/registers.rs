@@ -68,6 +68,8 @@ struct View<'a> {
     words: usize,
     /// Whether frames that find no room are dropped.
     overrun: bool,
+    /// The design's rate of averages; 0 where frames are not averaged.
+    smoothing: u32,
     /// Parameters of the bank.
     registers: String,
     /// Of a calibration in RAM.
@@ -142,6 +144,7 @@ impl<'a> View<'a> {
             stream_bits: plan.streams().bits,
             words: plan.streams().words(),
             overrun: plan.streams().drops,
+            smoothing: plan.smoothing.as_ref().map_or(0, |of| of.rate),
             registers: verilog(&constants.parameters()),
             calibration: plan.calibration.as_ref().map(CalibrationView::new),
             constants,

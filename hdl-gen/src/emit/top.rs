@@ -69,6 +69,9 @@ struct View {
     /// Thresholds of every frame, unless a calibration in RAM brings them: a taxel's noise, the least sum `|b|` of a contact.
     noise: String,
     contact: String,
+    /// Whether frames are averaged, and the rate, where no register has it.
+    averages: bool,
+    smoothing: String,
     /// Dead taxels of the design.
     dead: usize,
     field: bool,
@@ -159,6 +162,11 @@ impl View {
             context: verilog(&frame_context::parameters(plan)),
             noise: format!("{LONG_BITS}'d{}", plan.thresholds.taxel),
             contact: format!("{SUM_BITS}'d{}", plan.thresholds.contact),
+            averages: plan.smoothing.is_some(),
+            smoothing: match &plan.smoothing {
+                Some(_) if hardware.control => "smoothing".to_owned(),
+                of => format!("4'd{}", of.as_ref().map_or(0, |of| of.rate)),
+            },
             dead: plan.dead.as_ref().map_or(0, |dead| dead.taxels.len()),
             field: plan.has_field(),
             latency_cycles: timeline.latency_cycles,
@@ -263,6 +271,11 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     }
     if plan.crosstalk.is_none() {
         without.push("sptfra_crosstalk");
+    }
+    if plan.smoothing.is_none() {
+        without.push("sptfra_smoothing");
+    } else {
+        without.push("sptfra_taxel_stream");
     }
     if !plan.scales_frames() {
         without.push("sptfra_frame_scale");

@@ -22,6 +22,7 @@ use crate::plan::calibration::{Bank, Reading};
 use crate::plan::dead::{DeadPlan, GUESSED_SHARE};
 use crate::plan::format::FRICTION_FRACTION;
 use crate::plan::product::{Coefficients, Product, Vector};
+use crate::plan::smoothing::{Average, MOST_RATE};
 use crate::plan::vector_formats::field_shifts;
 use crate::plan::{Plan, words};
 
@@ -46,13 +47,17 @@ pub struct Model<'plan> {
     /// Of a calibration in RAM, what acts, and how many have before it.
     bank: Option<Bank>,
     version: u8,
+    average: Average,
+    /// The weight of a frame in it is `2^-rate`.
+    rate: u32,
 }
 
 impl<'plan> Model<'plan> {
     /// A model just out of reset.
     pub fn new(plan: &'plan Plan) -> Self {
         let bank = plan.calibration.as_ref().map(|calibration| calibration.power_up.clone());
-        Self { plan, frames: 0, slips: false, bank, version: 0 }
+        let rate = plan.smoothing.as_ref().map_or(0, |smoothing| smoothing.rate);
+        Self { plan, frames: 0, slips: false, bank, version: 0, average: Average::default(), rate }
     }
 
     /// The bank that acts on the frames from now on, where the design's calibration is in RAM.
@@ -62,9 +67,15 @@ impl<'plan> Model<'plan> {
         }
     }
 
-    /// As after the hardware's reset: the frame counter starts again; the calibration stays.
+    /// What is written to the register `SMOOTHING`: from the next frame on the weight of a frame in the average is `2^-rate`.
+    pub fn smooth(&mut self, rate: u32) {
+        self.rate = rate.min(MOST_RATE);
+    }
+
+    /// As after a soft reset of the hardware: the frame counter and the average start again; calibration and rate stay.
     pub fn reset(&mut self) {
         (self.frames, self.slips) = (0, false);
+        self.average = Average::default();
     }
 
     /// The output frame for one packet: its words in memory's order, float32 in Pa, up to the last of the beat with TLAST;
@@ -100,7 +111,11 @@ impl<'plan> Model<'plan> {
         if let Some(crosstalk) = &self.plan.crosstalk {
             crosstalk.remove(&mut stress, self.plan.formats.stress);
         }
-        let replaced = self.dead().map_or(&[][..], |dead| &dead.taxels);
+        let replaced = self.plan.dead.as_ref().or(self.bank.as_ref().map(|bank| &bank.dead.dead));
+        let replaced = replaced.map_or(&[][..], |dead| &dead.taxels);
+        if let Some(smoothing) = &self.plan.smoothing {
+            smoothing.take(self.rate, &mut self.average, &mut stress, replaced);
+        }
         let replaced_sum: i64 = replaced.iter().map(|&taxel| stress[taxel].abs()).sum();
         let mut noted = if self.replaced() > 0 { REPLACED } else { 0 };
         let stress_sum = Contact::new(&stress, self.plan.design.sensor.columns).stress_sum;

@@ -18,6 +18,7 @@ use super::product::Product;
 use super::quantise::{Quantised, quantise, taxel_force_n};
 use super::resources::Resources;
 use super::schedule::Schedule;
+use super::smoothing::SmoothingPlan;
 use super::standard_error::StandardErrorPlan;
 use super::vector_formats::{Formats, arms};
 use super::{Condition, Nnz, Plan, Thresholds, elements, ways};
@@ -104,6 +105,7 @@ impl Work {
             calibration: self.calibration.clone(),
             dead: self.dead.clone(),
             crosstalk: CrosstalkPlan::new(design),
+            smoothing: SmoothingPlan::new(design),
             thresholds: self.thresholds,
             estimator,
             operands: OperandLayout::new(&self.products, elements, ways as u32 * hardware.data_bits),

@@ -14,15 +14,6 @@ pub(super) const MOST_ROUNDING: f64 = 4.0;
 /// Why a checked design has no hardware plan.
 #[derive(Debug, Error)]
 pub enum PlanError {
-    /// A key of the sensor that software alone has.
-    #[error(
-        "[sensor] {key}: no hardware of it is generated yet; `sptfra solve` and Python have it: remove the key here, and correct \
-         the frames in software before they are sent"
-    )]
-    SoftwareOnly {
-        /// The key.
-        key: &'static str,
-    },
     /// The estimator has no hardware in this plan.
     #[error(
         "[algorithm] plan = \"paper\": the paper's plan has the line search only; write plan = \"reduced\", or \

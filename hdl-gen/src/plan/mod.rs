@@ -28,6 +28,7 @@ pub mod quantise;
 pub mod resources;
 pub mod savings;
 pub mod schedule;
+pub mod smoothing;
 pub mod standard_error;
 pub mod streams;
 pub mod vector_formats;
@@ -51,6 +52,7 @@ use matrix::QuantisedMatrix;
 use product::{Block, Product};
 use resources::Resources;
 use schedule::Schedule;
+use smoothing::SmoothingPlan;
 use standard_error::StandardErrorPlan;
 use streams::Streams;
 use vector_formats::Formats;
@@ -115,6 +117,8 @@ pub struct Plan {
     pub dead: Option<DeadPlan>,
     /// What removes crosstalk, if the sensor has it.
     pub crosstalk: Option<CrosstalkPlan>,
+    /// How frames are averaged, if they are.
+    pub smoothing: Option<SmoothingPlan>,
     /// Status thresholds.
     pub thresholds: Thresholds,
     /// The estimator of friction: `CeAn`, and the search in Op.

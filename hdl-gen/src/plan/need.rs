@@ -35,10 +35,6 @@ fn checked(design: &Design) -> Result<Work, PlanError> {
     if !estimators::has_hardware(design) {
         return Err(PlanError::JointEstimator);
     }
-    let input = &design.input;
-    if input.smoothing > 0 {
-        return Err(PlanError::SoftwareOnly { key: "smoothing" });
-    }
     check_widths(design)?;
     Work::new(design)
 }

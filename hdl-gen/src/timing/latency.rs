@@ -31,6 +31,15 @@ pub fn crosstalk(sensor: &Sensor) -> u64 {
     (sensor.taxels() + sensor.columns + sensor.rows) as u64 + 8
 }
 
+/// From a stress to the average with it.
+pub const SMOOTHING: u64 = 4;
+/// From a frame's last average to the first element's turn, where no scale takes longer.
+pub const SMOOTHING_DECIDED: u64 = 1;
+/// From the last stress of a frame that is averaged to its last one in `CeAn`: the frame is read once more.
+pub fn smoothed_to_cean(taxels: usize) -> u64 {
+    SMOOTHING + SMOOTHING_DECIDED + TAXEL_TO_CEAN + taxels as u64 - 1
+}
+
 /// From an element's turn to its write to the operand memories: two cycles more where stresses are shifted.
 pub fn turn_to_write(scaled: bool) -> u64 {
     if scaled { 6 } else { 4 }

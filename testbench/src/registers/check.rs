@@ -97,7 +97,7 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
     let (sensor, hardware) = (&plan.design.sensor, &plan.design.hardware);
     let hash = u64::from_str_radix(&resolved_hash(&plan.design), 16).unwrap_or_default();
     let part = |index| VERSION.split('.').nth(index).and_then(|text| text.parse::<u32>().ok()).unwrap_or_default();
-    // From bit 8 on, behind seven features and a bit that is 0.
+    // From bit 8 on, behind eight features.
     let stream = (hardware.stream_bits / 8) | (u32::from(registers::samples(plan)) << 8);
     let features = [
         plan.field_words() > 0,
@@ -107,6 +107,7 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
         plan.calibration.is_some(),
         plan.streams().drops,
         plan.calibration.as_ref().is_some_and(|of| of.curve().is_some()),
+        plan.smoothing.is_some(),
     ];
     let stream = stream | (plan.design.input.room as u32) << 12;
     vec![
@@ -116,7 +117,7 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
         ("HASH_HIGH", address::HASH_HIGH, (hash >> 32) as u32),
         ("GEOMETRY", address::GEOMETRY, (hardware.lanes << 16 | sensor.rows << 8 | sensor.columns) as u32),
         ("FRAME", address::FRAME, (plan.words_out() << 16 | plan.streams().words_in()) as u32),
-        ("FEATURES", address::FEATURES, features.iter().rev().fold(stream << 1, |word, &is| word << 1 | u32::from(is))),
+        ("FEATURES", address::FEATURES, features.iter().rev().fold(stream, |word, &is| word << 1 | u32::from(is))),
         ("CLOCK", address::CLOCK, (hardware.clock_mhz * 1e3).round() as u32),
         ("FULL_SCALE", address::FULL_SCALE, (hardware.full_scale_pa as f32).to_bits()),
         ("PREDICTED_LATENCY", address::PREDICTED_LATENCY, plan.timeline.latency_cycles as u32),

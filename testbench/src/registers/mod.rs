@@ -36,6 +36,7 @@ pub mod address {
     pub const LAST_LATENCY: u32 = 0x060;
     pub const LAST_INTERVAL: u32 = 0x064;
     pub const FRAMES_DROPPED: u32 = 0x068;
+    pub const SMOOTHING: u32 = 0x06C;
     pub const CALIBRATION: u32 = 0x080;
     pub const CALIBRATION_INDEX: u32 = 0x090;
     pub const CALIBRATION_DATA: u32 = 0x094;

@@ -80,9 +80,7 @@ pub fn run_plan(
     progress.stage("computing what the hardware must answer");
     let trial = Trial::new(plan, packets(plan.streams(), &frames.stress), options.seed);
     let solved = |design: &Design| {
-        let solver = Solver::new(design)?;
-        let solve = |packet: &Vec<u32>| solver.solve(&as_received(plan.streams(), packet));
-        trial.packets.iter().map(solve).collect::<Result<Vec<_>, SolveError>>()
+        Solver::new(design)?.solve_in_order(trial.packets.iter().map(|packet| as_received(plan.streams(), packet)))
     };
     let solutions = solved(&plan.design.solved_as_one())?;
 

@@ -45,11 +45,8 @@ pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Poin
     let packets = packets(Streams::of(design), &frames.stress);
     let refused = |source| SweepError::Solver { label: job.label(scene), source };
     let solver = Solver::new(design).map_err(refused)?;
-    let solutions = packets
-        .iter()
-        .map(|packet| solver.solve(&as_received(Streams::of(design), packet)))
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(refused)?;
+    let received = packets.iter().map(|packet| as_received(Streams::of(design), packet));
+    let solutions = solver.solve_in_order(received).map_err(refused)?;
     let mut point = described(job, scene, &solver, &solutions, &truth);
     let plan = match Plan::new(design) {
         Ok(plan) => plan,

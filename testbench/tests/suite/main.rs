@@ -35,6 +35,7 @@ mod ram;
 mod range;
 mod registers;
 mod simulate;
+mod smoothing;
 mod standin;
 mod stream_faults;
 mod stream_modes;

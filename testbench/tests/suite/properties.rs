@@ -29,11 +29,15 @@ fn packets(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
     let mut packets = frames::extremes(plan, random);
     packets.extend((0..6).map(|_| frames::contact(plan, random)));
     packets.extend([1e-4, 1e-3, 0.03, 1.0, 1.2].map(|share| frames::noise(plan, share, random)));
+    if plan.smoothing.is_some() {
+        packets = frames::held(&packets, random);
+    }
     if plan.design.input.counts() {
         packets = packets.iter().map(|packet| in_counts(plan, packet)).collect();
     }
     // An input that settles for a frame hides what it takes over from the frame before.
-    for index in (1..packets.len()).rev() {
+    // An average takes in what is alike.
+    for index in (1..packets.len()).rev().filter(|_| plan.smoothing.is_none()) {
         packets.swap(index, random.random_range(0..=index));
     }
     packets.truncate((share_of(MOST_CYCLES) as u64 / plan.timeline.interval_cycles) as usize);

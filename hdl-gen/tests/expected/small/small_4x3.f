@@ -47,6 +47,7 @@ rtl/sptfra_spmv_lane.v
 rtl/sptfra_spmv_sequencer.v
 rtl/sptfra_spmv_way.v
 rtl/sptfra_summary.v
+rtl/sptfra_taxel_stream.v
 rtl/sptfra_taxel_walk.v
 rtl/sptfra_times_index.v
 rtl/sptfra_turns.v

@@ -21,6 +21,7 @@
 #define MOST_WORDS 16384
 #define POLLS 1000000u
 #define MOST_TICKS 200
+#define RATE 3u /* as in mod.rs */
 #ifndef MOMENTS
 #define MOMENTS 7 /* cycles from one moment of a recovery to the next */
 #endif
@@ -272,10 +273,18 @@ int main(int count, char **arguments)
             identity.interval_cycles, (double)identity.full_scale_pa, identity.drops_frames);
         CHECK(!identity.calibration_in_ram && !identity.curve_in_ram && identity.replaceable == 0);
         CHECK(sptfra_enable_interrupts(&device, SPTFRA_FRAME_ERROR) == SPTFRA_OK);
+        if (identity.averages_frames) {
+            CHECK(sptfra_set_smoothing(&device, 9) == SPTFRA_OUT_OF_RANGE);
+            CHECK(sptfra_set_smoothing(&device, RATE) == SPTFRA_OK);
+            CHECK(platform.read(system, MACHINE_CORE + offsetof(sptfra_t, SMOOTHING)) == RATE);
+        } else {
+            CHECK(sptfra_set_smoothing(&device, 1) == SPTFRA_NO_SMOOTHING);
+        }
     } else {
         CHECK(sptfra_open_streams(&device, &platform, MACHINE_DMA, &shape) == SPTFRA_OK);
         CHECK(sptfra_identify(&device, &identity) == SPTFRA_NO_REGISTERS);
         CHECK(sptfra_soft_reset(&device, POLLS) == SPTFRA_NO_REGISTERS);
+        CHECK(sptfra_set_smoothing(&device, 1) == SPTFRA_NO_REGISTERS);
     }
 
     /* Every frame, good and bad, word by word. */

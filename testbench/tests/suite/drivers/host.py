@@ -17,9 +17,11 @@ import numpy as np
 
 # As in effort.rs.
 ALL = os.environ.get("SPTFRA_TEST_ALL", "0") != "0"
+# As in mod.rs.
+SMOOTHING = 3
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[4] / "drivers" / "python"))
-from sptfra_board import LAYOUT, Event, Layout, Sptfra, Status, separate  # noqa: E402
+from sptfra_board import LAYOUT, Event, Layout, Register, Sptfra, Status, separate  # noqa: E402
 from sptfra_desk import CORE, Block, Machine, Overlay, allocate  # noqa: E402
 
 
@@ -107,6 +109,12 @@ def main():
     expected = np.array([answers[index] for index in whole])
     assert len(whole) > 8
 
+    if identity.averages_frames:
+        assert "0 to 8" in refused(ValueError, lambda: sensor.set_smoothing(9))
+        sensor.set_smoothing(SMOOTHING)
+        assert overlay.core.read(Register.SMOOTHING) == SMOOTHING
+    else:
+        assert "smoothing" in refused(RuntimeError, lambda: sensor.set_smoothing(1))
     sensor.enable_interrupts(Event.FRAME_DONE)
     forces = sensor.reconstruct(stress)
     assert sensor.take_interrupts() & Event.FRAME_DONE

@@ -17,13 +17,16 @@ use crate::support::effort::{self, half_of, some_of};
 use crate::support::{built, frames, planned, shipped, workspace};
 use golden::design::{Design, Outputs, Overrun, PlanKind, Samples, Scaling};
 use hdl_gen::emit::{emit, resolved_hash};
+use hdl_gen::model::Model;
 use hdl_gen::plan::Plan;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use tempfile::TempDir;
 use testbench::tools;
-use testbench::trial::model_answers;
 use testbench::verilate::Built;
+
+/// What host programs write to the register `SMOOTHING`.
+const SMOOTHING: u32 = 3;
 
 /// A design, simulated, with frames of every kind in a file.
 struct Subject {
@@ -64,6 +67,14 @@ impl Subject {
         })
     }
 
+    /// Frames averaged, by what a register says.
+    fn averaging() -> Self {
+        Self::changed(Outputs::Resultants, |design| {
+            design.hardware.control = true;
+            (design.input.smoothing, design.input.noise) = (1, 0.1);
+        })
+    }
+
     fn changed(outputs: Outputs, change: impl Fn(&mut Design)) -> Self {
         let mut design = shipped("small-control");
         (design.algorithm.plan, design.algorithm.outputs) = (PlanKind::Reduced, outputs);
@@ -73,7 +84,10 @@ impl Subject {
         let folder = tempfile::tempdir().expect("a folder");
         let packets = packets(&plan);
         let mut bytes = Vec::new();
-        for (packet, answer) in packets.iter().zip(model_answers(&plan, &packets)) {
+        let mut model = Model::new(&plan);
+        model.smooth(SMOOTHING);
+        for packet in &packets {
+            let answer = model.process(packet);
             let words = [packet.len() as u32].into_iter().chain(packet.iter().copied()).chain(answer);
             bytes.extend(words.flat_map(u32::to_le_bytes));
         }
@@ -92,6 +106,12 @@ impl Subject {
 fn packets(plan: &Plan) -> Vec<Vec<u32>> {
     let mut random = ChaCha8Rng::seed_from_u64(2);
     let mut packets: Vec<Vec<u32>> = (0..20).map(|_| frames::contact(plan, &mut random)).collect();
+    if plan.smoothing.is_some() {
+        // What is alike is averaged.
+        let held = frames::held(&packets[12..15], &mut random);
+        packets.truncate(12);
+        packets.extend(held.into_iter().take(8));
+    }
     packets[2][3] = f32::NAN.to_bits();
     packets[5][0] = f32::INFINITY.to_bits();
     packets[7] = frames::empty(plan);
@@ -116,7 +136,7 @@ fn subjects() -> Vec<(Subject, usize)> {
         (Subject::of_integers, 0),
         (|| Subject::new(true, Outputs::Field), 2),
         (Subject::of_all_kinds, 2),
-        (|| Subject::new(true, Outputs::Resultants), 2),
+        (Subject::averaging, 2),
     ];
     half_of(kinds).into_iter().map(|(subject, bad)| (subject(), bad)).collect()
 }

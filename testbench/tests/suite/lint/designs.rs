@@ -44,6 +44,7 @@ pub fn designs() -> Vec<Design> {
     let mut unpacked = by_plan(shipped("odd"), paper, Outputs::Field);
     "unpacked".clone_into(&mut unpacked.name);
     unpacked.hardware.stream_bits = 64;
+    (unpacked.input.smoothing, unpacked.input.crosstalk) = (3, 0.02);
     let mut wide_control = by_plan(shipped("small-control"), reduced, Outputs::Resultants);
     "wide_control".clone_into(&mut wide_control.name);
     wide_control.hardware.stream_bits = 64;
@@ -149,6 +150,7 @@ fn scaled(banks: &Design) -> [Design; 3] {
     let mut scaled_banks = banks.clone();
     "scaled_banks".clone_into(&mut scaled_banks.name);
     scaled_banks.hardware.overrun = Overrun::Drop;
+    scaled_banks.input.smoothing = 4;
     for design in [&mut scaled, &mut scaled_fold, &mut scaled_banks] {
         design.hardware.scaling = Scaling::PerFrame;
     }

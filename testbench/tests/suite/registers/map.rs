@@ -82,6 +82,7 @@ fn widest() -> &'static Subject {
         design.input.pa_per_count = None;
         let points = vec![[0.0, 0.0], [300.0, -7e3], [4095.0, -150e3]];
         design.input.curve = Some(Curve { points, law: None });
+        design.input.smoothing = 4;
         let plan = planned(&design);
         Subject { built: built(&plan), plan }
     })
@@ -201,6 +202,7 @@ fn the_maps_special_fields_are_the_ones_that_other_tests_try() {
             "INTERRUPT_STATUS.FRAME_DONE woclr",
             "INTERRUPT_STATUS.FRAME_ERROR woclr",
             "INTERRUPT_STATUS.BAD_ACCESS woclr",
+            "SMOOTHING.K plain",
             "CALIBRATION_INDEX.WORD plain",
             "CALIBRATION_INDEX.ACTIVE plain",
             "CALIBRATION_DATA.WORD plain",

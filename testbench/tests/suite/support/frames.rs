@@ -34,6 +34,13 @@ pub fn noise(plan: &Plan, share: f64, random: &mut ChaCha8Rng) -> Vec<u32> {
     encode(&stress)
 }
 
+/// Each packet of pascals, then the same with noise of a few percent, as an average takes them in.
+pub fn held(packets: &[Vec<u32>], random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
+    let mut noisy = |&bits: &u32| (f32::from_bits(bits) * random.random_range(0.97..1.03)).to_bits();
+    let mut copy = |packet: &Vec<u32>| packet.iter().map(&mut noisy).collect::<Vec<u32>>();
+    packets.iter().flat_map(|packet| [packet.clone(), copy(packet), copy(packet)]).collect()
+}
+
 /// Nothing presses.
 pub fn empty(plan: &Plan) -> Vec<u32> {
     vec![0; plan.taxels()]

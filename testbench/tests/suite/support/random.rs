@@ -253,6 +253,9 @@ fn with_every_key(mut design: Design, random: &mut ChaCha8Rng) -> Result<Design,
     if random.random_bool(0.25) {
         input.crosstalk = random.random_range(0.0005..0.1);
     }
+    if random.random_bool(0.3) {
+        (input.smoothing, input.noise) = (random.random_range(1..=8), 0.1);
+    }
     let files = design.files();
     let files: Vec<(&str, String)> = files.iter().map(|(name, text)| (*name, text.clone())).collect();
     Design::from_parts(&design.to_toml(), &design.name, &files).map_err(|error| error.to_string())

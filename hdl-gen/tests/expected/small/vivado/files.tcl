@@ -62,6 +62,7 @@ foreach file {
     sptfra_spmv_sequencer.v
     sptfra_spmv_way.v
     sptfra_summary.v
+    sptfra_taxel_stream.v
     sptfra_taxel_walk.v
     sptfra_times_index.v
     sptfra_turns.v

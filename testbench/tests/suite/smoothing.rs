@@ -1,0 +1,264 @@
+//! Averages over frames: RTL and model alike in all stream modes, among bad frames, steps and resets.
+
+use crate::support::effort::some_of;
+use crate::support::faults::broken;
+use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint};
+use golden::design::{Design, Outputs, Overrun, PlanKind, Samples, Scaling};
+use golden::scene::normal;
+use golden::solver::Solver;
+use hdl_gen::model::{BAD_LENGTH, DROPPED, Model, NOT_FINITE};
+use hdl_gen::plan::Plan;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use testbench::accuracy::SolverError;
+use testbench::registers::{Access, Controlled, address};
+use testbench::stream::{Mode, Outcome, Pacing, Reset, Traffic, exchange};
+use testbench::stream_words::{Answer, decode};
+use testbench::trial::{model_answers, timeout};
+use testbench::verilate::Built;
+
+const NOISE: f64 = 0.01;
+
+/// Both plans and estimators, both scalings, dead taxels and crosstalk, integers, beats of several samples.
+fn designs() -> Vec<Design> {
+    let [paper, reduced] = [PlanKind::Paper, PlanKind::Reduced];
+    let small = |name: &str, kind: PlanKind, outputs: Outputs, scaling: Scaling, smoothing: u32| {
+        let mut design = by_plan(shipped("small"), kind, outputs);
+        design.name = format!("smooth_{name}");
+        design.hardware.scaling = scaling;
+        (design.input.smoothing, design.input.noise) = (smoothing, NOISE);
+        design
+    };
+    let plain = small("plain", reduced, Outputs::Field, Scaling::PerFrame, 2);
+    let of_paper = small("paper", paper, Outputs::Field, Scaling::PerFrame, 1);
+    let mut corrected = small("corrected", reduced, Outputs::Resultants, Scaling::Fixed, 8);
+    corrected.hardware.stream_bits = 128;
+    corrected.input.crosstalk = 0.05;
+    corrected.input.dead = vec![5];
+    let mut counts = with_joint(small("counts", reduced, Outputs::Field, Scaling::PerFrame, 3));
+    "smooth_counts".clone_into(&mut counts.name);
+    (counts.sensor.columns, counts.sensor.rows) = (3, 5);
+    counts.input.pa_per_count = Some(-12.5);
+    counts.hardware.samples = Samples::Int16;
+    counts.hardware.stream_bits = 64;
+    let fixed = small("fixed", paper, Outputs::Field, Scaling::Fixed, 4);
+    vec![plain, of_paper, corrected, counts, fixed]
+}
+
+/// Contacts that are held, with noise, and released; each frame as often as it takes to see both what is averaged and restarts.
+fn pascals(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<f64>> {
+    let mut frames = Vec::new();
+    for _ in 0..5 {
+        let contact = frames::contact(plan, random);
+        let stress: Vec<f64> = contact.iter().map(|&bits| f64::from(f32::from_bits(bits))).collect();
+        let peak = stress.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()));
+        let mut noisy = |stress: &f64| stress + NOISE * peak * normal(random);
+        frames.extend((0..6).map(|_| stress.iter().map(&mut noisy).collect::<Vec<f64>>()));
+    }
+    frames.insert(12, vec![0.0; plan.taxels()]);
+    frames
+}
+
+fn packet(plan: &Plan, stress: &[f64]) -> Vec<u32> {
+    let (input, samples) = (&plan.design.input, plan.design.hardware.samples);
+    let value = |(taxel, &stress): (usize, &f64)| match samples {
+        Samples::Float32 => input.from_pa(taxel, stress),
+        _ => samples.clip(input.from_pa(taxel, stress).round()),
+    };
+    plan.streams().packet(&stress.iter().enumerate().map(value).collect::<Vec<_>>())
+}
+
+fn packets(plan: &Plan, seed: u64) -> Vec<Vec<u32>> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    pascals(plan, &mut random).iter().map(|stress| packet(plan, stress)).collect()
+}
+
+#[test]
+fn every_word_and_every_cycle_is_right() {
+    let wrong = in_parallel(&designs(), |design| {
+        let plan = planned(design);
+        let packets = packets(&plan, 3);
+        simulate_exactly(&plan, &built(&plan), &packets, 3)
+            .map(drop)
+            .map_err(|fault| format!("{}: {fault}", design.name))
+    });
+    assert_eq!(wrong.into_iter().filter_map(Result::err).collect::<Vec<_>>(), Vec::<String>::new());
+}
+
+/// Short, long and not finite frames among the others.
+fn with_bad_frames(plan: &Plan) -> Vec<Vec<u32>> {
+    let width = plan.streams().words();
+    let mut random = ChaCha8Rng::seed_from_u64(9);
+    let mut sent = Vec::new();
+    for packet in packets(plan, 5) {
+        let mut bad = packet.clone();
+        match random.random_range(0..4) {
+            0 => bad.truncate((plan.streams().beats_in() - 1) * width),
+            1 => bad.extend(std::iter::repeat_n(bad[0], 2 * width)),
+            2 if plan.streams().sample == Samples::Float32 => bad[0] = f32::NAN.to_bits(),
+            _ => bad.clear(),
+        }
+        sent.extend([packet, bad].into_iter().filter(|packet| !packet.is_empty()));
+    }
+    sent
+}
+
+/// Whether each answer is the model's, which begins anew with each reset and knows nothing of what was dropped.
+fn judged(plan: &Plan, packets: &[Vec<u32>], outcome: &Outcome) -> Result<(), String> {
+    for (sent, exchanges) in outcome.between_resets(packets.len()) {
+        let (mut model, mut next) = (Model::new(plan), sent.start);
+        for exchange in exchanges {
+            let mut expected = model.process(&packets[exchange.packet]);
+            if plan.streams().drops && exchange.packet > next {
+                expected[0] |= DROPPED;
+            }
+            next = exchange.packet + 1;
+            if exchange.words != expected {
+                return Err(format!("{}: packet {}, {:?}", plan.design.name, exchange.packet, outcome.resumed));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A traffic of good and bad frames with resets among them.
+fn with_resets(plan: &Plan, built: &Built, mode: &Mode) -> Result<(), String> {
+    let sent = with_bad_frames(plan);
+    let interval = plan.timeline.interval_cycles;
+    let resets = [5, 11, 23].map(|frames| Reset { cycle: frames * interval + 7 * frames, length: 1 });
+    let traffic = Traffic::new(&sent, 8 * timeout(plan)).with_mode(mode).with_resets(&resets);
+    let mut core = built.load(5).expect("loads");
+    let outcome = exchange(&mut core, &traffic, |_| ()).map_err(|error| error.to_string())?;
+    judged(plan, &sent, &outcome)
+}
+
+#[test]
+fn bad_frames_and_resets_are_right() {
+    in_parallel(&designs(), |design| {
+        let plan = planned(design);
+        let sent = with_bad_frames(&plan);
+        let expected = model_answers(&plan, &sent);
+        let is_bad = |words: &&Vec<u32>| words[0] & (BAD_LENGTH | NOT_FINITE) != 0;
+        assert!(expected.iter().filter(is_bad).count() > 8, "{}", design.name);
+        // Without the bad ones the other answers are the same, but for their numbers.
+        let unnumbered = |words: &Vec<u32>| [&[words[0] & 0xffff][..], &words[1..]].concat();
+        let good = expected.iter().filter(|words| !is_bad(words)).map(unnumbered);
+        let alone = model_answers(&plan, &packets(&plan, 5));
+        assert!(good.eq(alone.iter().map(unnumbered)), "{}", design.name);
+        let built = built(&plan);
+        for mode in Mode::all(5) {
+            with_resets(&plan, &built, &mode).unwrap_or_else(|error| panic!("{}: {error}", mode.name));
+        }
+    });
+}
+
+#[test]
+fn dropped_frames_leave_the_average_as_it_was() {
+    let mut design = designs().swap_remove(0);
+    design.hardware.overrun = Overrun::Drop;
+    "smooth_drops".clone_into(&mut design.name);
+    let plan = planned(&design);
+    let sent = with_bad_frames(&plan);
+    let pacing = Pacing::Spaced { cycles: plan.timeline.interval_cycles / 2, inside: usize::MAX };
+    let traffic = Traffic::new(&sent, timeout(&plan)).with_pacing(pacing).with_drops();
+    let outcome = exchange(&mut built(&plan).load(3).expect("loads"), &traffic, |_| ()).expect("runs");
+    assert!(outcome.dropped.len() > 5, "{}", outcome.dropped.len());
+    judged(&plan, &sent, &outcome).unwrap();
+}
+
+/// Written at any moment, a rate acts from some frame on: the ones before have the old one.
+#[test]
+fn a_rate_that_is_written_acts_on_whole_frames() {
+    let mut design = designs().swap_remove(0);
+    design.hardware.control = true;
+    "smooth_control".clone_into(&mut design.name);
+    let plan = planned(&design);
+    let built = built(&plan);
+    let sent = packets(&plan, 3);
+    let answers = |change: usize, rate: u32| {
+        let mut model = Model::new(&plan);
+        let mut answer = |(index, packet): (usize, &Vec<u32>)| {
+            if index == change {
+                model.smooth(rate);
+            }
+            model.process(packet)
+        };
+        sent.iter().enumerate().map(&mut answer).collect::<Vec<_>>()
+    };
+    let interval = plan.timeline.interval_cycles;
+    let mut changes = Vec::new();
+    for (index, rate) in [0, 1, 3, 5, 8, 15, 0].into_iter().enumerate() {
+        let mut core = Controlled::new(built.load(5).expect("loads"), 5).expect("has a port");
+        let cycle = 2 * interval + 2 * index as u64 * interval + 13 * index as u64;
+        core.plan(cycle, Access::Write { address: address::SMOOTHING, data: rate, strobes: 1 });
+        let outcome = exchange(&mut core, &Traffic::new(&sent, timeout(&plan)), |_| ()).expect("runs");
+        let found: Vec<Vec<u32>> = outcome.exchanges.into_iter().map(|exchange| exchange.words).collect();
+        let change = (0..sent.len()).find(|&change| answers(change, rate) == found);
+        changes.push(change.unwrap_or_else(|| panic!("{rate} in cycle {cycle}")));
+        assert_eq!(core.read(address::SMOOTHING).expect("a reply"), rate);
+    }
+    assert!(changes.is_sorted() && changes[0] > 0 && changes[6] > changes[0] + 6, "{changes:?}");
+}
+
+#[test]
+fn the_model_averages_as_the_solver_does() {
+    for design in designs() {
+        let mut alone = design.clone();
+        alone.input.smoothing = 0;
+        let sent = packets(&planned(&design), 7);
+        let error = |model: &Design, solver: &Design| {
+            let plan = planned(model);
+            let answers: Vec<Answer> = model_answers(&plan, &sent).iter().filter_map(|words| decode(words)).collect();
+            let received = sent.iter().map(|packet| plan.streams().received(packet));
+            let solver = Solver::new(&solver.solved_as_one()).expect("a solution");
+            SolverError::new(&answers, &solver.solve_in_order(received).expect("whole frames")).resultant_max
+        };
+        let [smoothed, without, mixed] = [error(&design, &design), error(&alone, &alone), error(&alone, &design)];
+        println!("{}: {smoothed}, {without}, {mixed}", design.name);
+        assert!(smoothed < 2.0 * without, "{}: {smoothed} {without}", design.name);
+        assert!(mixed > 10.0 * smoothed, "{}: {mixed} {smoothed}", design.name);
+    }
+}
+
+/// With a scale for each frame the lanes begin 4 cycles later. With so many that they wait for the direction of the push, the
+/// frame that it is found in is read once more.
+#[test]
+fn a_shipped_design_is_hardly_later_and_as_often() {
+    let few = ["sensor1-fast", "sensor1-resultants", "sensor1-reduced", "sensor1-small"].map(|name| (name, 4));
+    let many = ["sensor1-fast-64", "sensor1-fast-100"].map(|name| (name, 4 + 100));
+    let late = in_parallel(&[&few[..], &many].concat(), |&(name, most)| {
+        let mut design = shipped(name);
+        design.hardware.scaling = Scaling::PerFrame;
+        let mut times = |smoothing: u32| {
+            design.input.smoothing = smoothing;
+            let timeline = planned(&design).timeline;
+            [timeline.latency_cycles, timeline.interval_cycles]
+        };
+        let ([latency, interval], [smoothed, often]) = (times(0), times(4));
+        let times = format!("{name}: {latency} {interval}, {smoothed} {often}");
+        println!("{times}");
+        (smoothed > latency + most || often != interval).then_some(times)
+    });
+    assert_eq!(late.into_iter().flatten().collect::<Vec<_>>(), Vec::<String>::new());
+}
+
+#[test]
+fn faults_are_noticed() {
+    let faults = some_of([
+        ("bank <= !bank;", "bank <= bank;"),
+        ("if (!is_bad && !is_bad_length) begin", "if (!is_bad_length) begin"),
+        ("if (!is_bad && !is_bad_length) begin", "if (!is_bad) begin"),
+        ("shows_other <= is_bad || is_bad_length;\n            if", "shows_other <= 1'b1;\n            if"),
+        ("bank_averaged <= !restarts_4;", "bank_averaged <= 1'b1;"),
+        ("            holds <= 1'b0;\n", ""),
+        ("wire restarts_4 = !holds || ", "wire restarts_4 = !holds && "),
+        ("rate_held <= rate;", "rate_held <= 4'd1;"),
+        ("$signed({stress_1[26], stress_1, 9'h100}) - old_1", "$signed({stress_1[26], stress_1, 9'h000}) - old_1"),
+    ]);
+    let plan = planned(&designs().swap_remove(0));
+    let [free, ..] = Mode::all(5);
+    let missed = in_parallel(&faults, |&(from, to)| {
+        with_resets(&plan, &broken(&plan, "sptfra_smoothing", from, to), &free).is_ok().then_some(from)
+    });
+    assert_eq!(missed.into_iter().flatten().collect::<Vec<_>>(), Vec::<&str>::new());
+}
