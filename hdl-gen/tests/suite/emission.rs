@@ -72,7 +72,7 @@ fn metadata_describes_the_folder() {
         (&metadata["taxels"], &metadata["beats_in"], &metadata["beats_out"]),
         (&12.into(), &12.into(), &52.into())
     );
-    assert_eq!(metadata["format"], 2);
+    assert_eq!(metadata["format"], 3);
     // The list has every word once, or a part of it, in the order of the stream.
     let output = metadata["output"].as_array().unwrap();
     let place =
