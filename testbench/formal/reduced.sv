@@ -4,7 +4,7 @@
 //
 // The generated top level with its control logic. Left out, and free to do anything in any cycle: the skid buffers,
 // Bz, CeAn, the arithmetic, and how long programs, search and summary take. The sink may stall for ever. With JOINT the
-// search is that of the joint estimator, which has no line before it, and stages of their own behind it: search, LOOK and
+// search is that of the joint estimator, which has no line before it, and stages of their own behind it: search, FEATURES and
 // correction have a frame each. A frame's u are free for another when they were searched. With LATENCY frames wait for fields; with ONE_RESIDUAL only one has a place.
 `include "progress.svh"
 
@@ -63,13 +63,13 @@ module harness (
     wire direction_valid;
     wire level_done;
     wire centroid_waits;
-    wire looking;
+    wire extracting;
     wire showing;
     wire centre_waits;
-    wire look_done;
+    wire features_done;
     wire window_done;
     wire correcting;
-    wire look_start;
+    wire features_start;
     wire correction_start;
     wire fill_bank;
     wire search_bank;
@@ -80,10 +80,10 @@ module harness (
     wire line_valid;
     wire [2:0] line_state;
     wire level_done = 1'b0;
-    wire looking = 1'b0;
+    wire extracting = 1'b0;
     wire showing = 1'b0;
     wire centre_waits = 1'b0;
-    wire look_done = 1'b0;
+    wire features_done = 1'b0;
     wire window_done = 1'b0;
     wire correcting = 1'b0;
     wire found_waits = answer_waits;
@@ -139,17 +139,17 @@ module harness (
 `ifdef JOINT
         .direction_valid (direction_valid),
         .\estimator.level_done (level_done),
-        .\estimator.centre_done (look_done),
+        .\estimator.centre_done (features_done),
         .\estimator.window_done (window_done),
         .\estimator.stages.u_waiting (u_waiting),
         .\estimator.stages.searching (searching),
         .\estimator.stages.centroid_waits (centroid_waits),
-        .\estimator.stages.looking (looking),
+        .\estimator.stages.extracting (extracting),
         .\estimator.stages.showing (showing),
         .\estimator.stages.centre_waits (centre_waits),
         .\estimator.stages.correcting (correcting),
         .\estimator.stages.answer_waits (answer_waits),
-        .\estimator.look_start (look_start),
+        .\estimator.features_start (features_start),
         .\estimator.correction_start (correction_start),
         .\estimator.next_fill_bank (fill_bank),
         .\estimator.search_bank (search_bank),
@@ -187,7 +187,7 @@ module harness (
     reg [3:0] recent; // sums were written in one of the last cycles
     wire sums_written = $anyseq;
     // Frames that wait for an answer
-    wire [3:0] frames_due = {3'd0, open[0]} + u_there + searching + looking + correcting;
+    wire [3:0] frames_due = {3'd0, open[0]} + u_there + searching + extracting + correcting;
 
     always @(posedge clock) begin
         started <= 1'b1;
@@ -231,7 +231,7 @@ module harness (
             assume (direction_valid || (u_waiting == 2'd0));
             assume (!sums_written || (young == 3'd0));
             assume (!level_done || (searching && !centroid_waits));
-            assume (!look_done || (looking && !centre_waits));
+            assume (!features_done || (extracting && !centre_waits));
             assume (!window_done || showing);
 `endif
             // The next ones are not written in the first cycles after those of the frame before
@@ -277,14 +277,14 @@ module harness (
             assert (!output_start || !at_output);
 `ifdef JOINT
             // A frame passes on when there is one, to a stage that has none
-`ifdef LOOK
-            assert (!look_start || (searching && !looking && !showing));
-            assert (!correction_start || (looking && !showing && !correcting));
+`ifdef FEATURES
+            assert (!features_start || (searching && !extracting && !showing));
+            assert (!correction_start || (extracting && !showing && !correcting));
 `else
             assert (!correction_start || (searching && !correcting));
 `endif
             assert (!search_start || !searching);
-            // The bank that is filled is neither searched nor looked at, and those two are not the same one
+            // The bank that is filled is neither searched nor read for features, and those two are not the same one
             assert (!open[0] || (u_there + searching < 3'd2));
             assert (!open[0] || !searching || (fill_bank != search_bank));
 `endif
@@ -334,10 +334,10 @@ module harness (
             // Op
             assert (!answer_waits || answering);
             assert (!found_waits || searching);
-            assert (!centre_waits || looking);
-            assert (!looking || !showing);
-`ifndef LOOK
-            assert (!looking && !showing);
+            assert (!centre_waits || extracting);
+            assert (!extracting || !showing);
+`ifndef FEATURES
+            assert (!extracting && !showing);
 `endif
             assert (!friction_due || summary_due);
             assert (!summary_due || summary_busy);
@@ -367,15 +367,15 @@ module harness (
         + (field_there ? 10'd5 : field_started ? 10'd10 : 10'd0);
     wire [9:0] left_of_search = (open[0] ? (summed ? 10'd125 : 10'd126) : 10'd0) + 10'd116 * u_there
         + (searching ? (found_waits ? 10'd109 : 10'd112) : 10'd0)
-        + (looking ? (centre_waits ? 10'd102 : 10'd105) : 10'd0) + (showing ? 10'd5 : 10'd0)
+        + (extracting ? (centre_waits ? 10'd102 : 10'd105) : 10'd0) + (showing ? 10'd5 : 10'd0)
         + (correcting ? (answer_waits ? 10'd83 : 10'd88) : 10'd0)
         + (friction_due ? 10'd68 : summary_due ? 10'd63 : summary_busy ? 10'd58 : 10'd0);
     wire [9:0] left_at_output = busy ? 10'd5 + LAST_BEAT - beat : beat_issued ? 10'd3 : {9'd0, field_release};
     wire [9:0] left = left_of_turns + left_of_search + left_at_output;
     wire asked = (issuing != 3'd0) || (open != 3'd0) || (searching && !found_waits)
-        || (looking && !centre_waits) || showing || (correcting && !answer_waits) || summary_due;
+        || (extracting && !centre_waits) || showing || (correcting && !answer_waits) || summary_due;
     wire answered = issued || sums_written || coefficients_complete || residual_written || field_complete
-        || level_done || look_done || window_done || search_done || friction_done || summary_done;
+        || level_done || features_done || window_done || search_done || friction_done || summary_done;
     wire line_willing = (u_waiting == 2'd0) || searching || line_valid;
 
     progress progress (

@@ -2,7 +2,7 @@
 //
 // The frame handshake of a design with one program a frame: resultants only, with up to three frames between it and the
 // output, or, with FIELD, the paper's plan, whose two fields have a place until they have left. With JOINT the search is
-// that of the joint estimator, whose search, look and correction have a frame each: up to five.
+// that of the joint estimator, whose search, features and correction have a frame each: up to five.
 //
 // The generated top level with its control logic. Left out, and free to do anything in any cycle: the skid buffers,
 // Bz, CeAn, the arithmetic, and how long programs, search and summary take. The sink may stall for ever.
@@ -49,14 +49,14 @@ module harness (
     wire direction_valid;
     wire level_done;
     wire centroid_waits;
-    wire looking;
+    wire extracting;
     wire showing;
     wire centre_waits;
-    wire look_done;
+    wire features_done;
     wire window_done;
     wire correcting;
     wire search_start;
-    wire look_start;
+    wire features_start;
     wire correction_start;
     wire fill_bank;
     wire search_bank;
@@ -67,10 +67,10 @@ module harness (
     wire line_valid;
     wire [2:0] line_state;
     wire level_done = 1'b0;
-    wire looking = 1'b0;
+    wire extracting = 1'b0;
     wire showing = 1'b0;
     wire centre_waits = 1'b0;
-    wire look_done = 1'b0;
+    wire features_done = 1'b0;
     wire window_done = 1'b0;
     wire correcting = 1'b0;
     wire found_waits = answer_waits;
@@ -118,18 +118,18 @@ module harness (
 `ifdef JOINT
         .direction_valid (direction_valid),
         .\estimator.level_done (level_done),
-        .\estimator.centre_done (look_done),
+        .\estimator.centre_done (features_done),
         .\estimator.window_done (window_done),
         .\estimator.stages.u_waiting (u_waiting),
         .\estimator.stages.searching (searching),
         .\estimator.stages.centroid_waits (centroid_waits),
-        .\estimator.stages.looking (looking),
+        .\estimator.stages.extracting (extracting),
         .\estimator.stages.showing (showing),
         .\estimator.stages.centre_waits (centre_waits),
         .\estimator.stages.correcting (correcting),
         .\estimator.stages.answer_waits (answer_waits),
         .\estimator.search_start (search_start),
-        .\estimator.look_start (look_start),
+        .\estimator.features_start (features_start),
         .\estimator.correction_start (correction_start),
         .\estimator.next_fill_bank (fill_bank),
         .\estimator.search_bank (search_bank),
@@ -218,7 +218,7 @@ module harness (
             assume (direction_valid || (u_waiting == 2'd0));
             assume (!sums_written || (completed == 4'd0));
             assume (!level_done || (searching && !centroid_waits));
-            assume (!look_done || (looking && !centre_waits));
+            assume (!features_done || (extracting && !centre_waits));
             assume (!window_done || showing);
 `endif
             assume (!summary_done || summary_due);
@@ -240,8 +240,8 @@ module harness (
 `ifdef JOINT
             // A frame passes on when there is one, to a stage that has none; the bank that is filled is not searched
             assert (!search_start || !searching);
-            assert (!look_start || (searching && !looking && !showing));
-            assert (!correction_start || (looking && !showing && !correcting));
+            assert (!features_start || (searching && !extracting && !showing));
+            assert (!correction_start || (extracting && !showing && !correcting));
             assert (!(issuing || arriving) || !searching || (fill_bank != search_bank));
 `endif
 `ifdef FIELD
@@ -260,8 +260,8 @@ module harness (
             assert ({2'd0, u_held} == {3'd0, issuing} + arriving + u_there + searching);
             assert ((u_held <= 2'd2) && !(start && (u_held == 2'd2)));
             assert (!found_waits || searching);
-            assert (!centre_waits || looking);
-            assert (!looking || !showing);
+            assert (!centre_waits || extracting);
+            assert (!extracting || !showing);
 `ifdef JOINT
             assert ({3'd0, sums_wait} == {3'd0, summed} + u_there);
             assert (!sums_take || sums_wait);
@@ -303,15 +303,15 @@ module harness (
     wire [9:0] left_in_lanes = (start ? 10'd136 : 10'd0) + (issuing ? 10'd133 : 10'd0) + (arriving ? 10'd128 : 10'd0)
         - {9'd0, summed};
     wire [9:0] left_of_search = 10'd116 * u_there + (searching ? (found_waits ? 10'd109 : 10'd112) : 10'd0)
-        + (looking ? (centre_waits ? 10'd102 : 10'd105) : 10'd0) + (showing ? 10'd5 : 10'd0)
+        + (extracting ? (centre_waits ? 10'd102 : 10'd105) : 10'd0) + (showing ? 10'd5 : 10'd0)
         + (correcting ? (answer_waits ? 10'd83 : 10'd88) : 10'd0)
         + (summary_due ? 10'd63 : summary_busy ? 10'd58 : 10'd0);
     wire [9:0] left_at_output = busy ? 10'd5 + LAST_BEAT - beat : beat_issued ? 10'd3 : valid[1] ? 10'd2
         : {9'd0, valid[2]};
     wire [9:0] left = left_in_lanes + left_of_search + left_at_output;
-    wire asked = issuing || arriving || (searching && !found_waits) || (looking && !centre_waits) || showing
+    wire asked = issuing || arriving || (searching && !found_waits) || (extracting && !centre_waits) || showing
         || (correcting && !answer_waits) || summary_due;
-    wire answered = issued || sums_written || coefficients_complete || level_done || look_done || window_done
+    wire answered = issued || sums_written || coefficients_complete || level_done || features_done || window_done
         || search_done || summary_done;
     wire line_willing = (u_waiting == 2'd0) || searching || line_valid;
 

@@ -29,8 +29,8 @@ module sptfra_correction #(
     parameter ROM_DIR = "",
     // Name of the ROM files, without what they hold
     parameter ROM_NAME = "",
-    // Checked in simulation, 0: unchecked: cycles from the look's start to its end
-    parameter integer EXPECTED_LOOK_LATENCY = 0,
+    // Checked in simulation, 0: unchecked: cycles from the features' start to their end
+    parameter integer EXPECTED_FEATURES_LATENCY = 0,
     // ... from the first input of the network to the correction
     parameter integer EXPECTED_NETWORK_LATENCY = 0,
     // Derived: quads, and the bits of their number
@@ -43,16 +43,16 @@ module sptfra_correction #(
     input  wire read_valid,
     input  wire [ROW_WIDTH-1:0] read_quad,
     input  wire [3*4*27-1:0] read_values,
-    // A frame is searched, with its sum |b| held from the next cycle on until the look starts
+    // A frame is searched, with its sum |b| held from the next cycle on until the features start
     input  wire search_start,
     input  wire [39:0] stress_sum,
-    // Look, with these held from the next cycle on until the window is done
-    input  wire look_start,
+    // Features, with these held from the next cycle on until the window is done
+    input  wire features_start,
     input  wire signed [17:0] mu_x, // the centroid of its level set, 16 fraction bits
     input  wire signed [17:0] mu_y,
-    output wire look_done, // one cycle
-    output wire saturated, // a stress was clipped; held until the next look
-    // Correction of what the look found: a window is shown, then the next look may start
+    output wire features_done, // one cycle
+    output wire saturated, // a stress was clipped; held until the next features
+    // Correction of what the features hold: a window is shown, then the next ones may start
     input  wire start,
     output wire window_done, // one cycle
     // Result, held until the next start: within 1/4, 16 fraction bits
@@ -67,13 +67,13 @@ module sptfra_correction #(
     wire [WORD_WIDTH-1:0] input_word;
     wire [4*27-1:0] input_values;
     wire first_input;
-    wire [ROW_WIDTH-1:0] look_quad;
-    wire [3*4*27-1:0] look_values;
+    wire [ROW_WIDTH-1:0] features_quad;
+    wire [3*4*27-1:0] features_values;
 
     genvar index;
 
     generate
-        // A search that begins after a look is behind it all the way: two cycles a quad at least
+        // A search that begins after features is behind them all the way: two cycles a quad at least
         for (index = 0; index < 3; index = index + 1) begin : gen_memories
             sptfra_ram #(
                 .WIDTH         (4 * 27),
@@ -85,13 +85,13 @@ module sptfra_correction #(
                 .write_address (read_quad),
                 .write_data    (read_values[4*27*index +: 4*27]),
                 .read_enable   (1'b1),
-                .read_address  (look_quad),
-                .read_data     (look_values[4*27*index +: 4*27])
+                .read_address  (features_quad),
+                .read_data     (features_values[4*27*index +: 4*27])
             );
         end
     endgenerate
 
-    sptfra_look #(
+    sptfra_features #(
         .COLUMNS          (COLUMNS),
         .ROWS             (ROWS),
         .ROW_WIDTH        (ROW_WIDTH),
@@ -100,25 +100,25 @@ module sptfra_correction #(
         .LENGTH           (LENGTH),
         .WORD_WIDTH       (WORD_WIDTH),
         .STRESS_LEFT      (STRESS_LEFT),
-        .EXPECTED_LATENCY (EXPECTED_LOOK_LATENCY)
-    ) look (
-        .clock        (clock),
-        .reset        (reset),
-        .start        (search_start),
-        .stress_sum   (stress_sum),
-        .look_start   (look_start),
-        .mu_x         (mu_x),
-        .mu_y         (mu_y),
-        .u_quad       (look_quad),
-        .u_values     (look_values),
-        .look_done    (look_done),
-        .saturated    (saturated),
-        .window_start (start),
-        .input_valid  (input_valid),
-        .input_first  (first_input),
-        .input_word   (input_word),
-        .input_values (input_values),
-        .window_done  (window_done)
+        .EXPECTED_LATENCY (EXPECTED_FEATURES_LATENCY)
+    ) features (
+        .clock          (clock),
+        .reset          (reset),
+        .start          (search_start),
+        .stress_sum     (stress_sum),
+        .features_start (features_start),
+        .mu_x           (mu_x),
+        .mu_y           (mu_y),
+        .u_quad         (features_quad),
+        .u_values       (features_values),
+        .features_done  (features_done),
+        .saturated      (saturated),
+        .window_start   (start),
+        .input_valid    (input_valid),
+        .input_first    (first_input),
+        .input_word     (input_word),
+        .input_values   (input_values),
+        .window_done    (window_done)
     );
 
     sptfra_network #(

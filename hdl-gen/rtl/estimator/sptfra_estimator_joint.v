@@ -4,7 +4,7 @@
 // Grid search estimator: friction pair (mu_x, mu_y) from the level set of Condition 1.
 //
 // Three stages, each with its own frame (sptfra_joint_stages): search (sptfra_grid_search), with NETWORK the feature
-// window (sptfra_look), and correction. u_q of the next frame may arrive meanwhile.
+// window (sptfra_features), and correction. u_q of the next frame may arrive meanwhile.
 
 `default_nettype none
 
@@ -57,7 +57,7 @@ module sptfra_estimator_joint #(
     // ... from that row to the centroid
     parameter integer EXPECTED_LEVEL_LATENCY = 0,
     // ... from the centroid to the contact's centre
-    parameter integer EXPECTED_LOOK_LATENCY = 0,
+    parameter integer EXPECTED_FEATURES_LATENCY = 0,
     // ... from the first input of the network to the correction
     parameter integer EXPECTED_NETWORK_LATENCY = 0,
     // ... from the centroid, or the correction, to the friction
@@ -130,14 +130,14 @@ module sptfra_estimator_joint #(
 
     // ---- Stages: which frame is where
     wire search_bank;
-    wire search_start, look_start, correction_start;
+    wire search_start, features_start, correction_start;
     wire level_done, centre_done, window_done, search_done; // the last of these: the answer is there
 
     assign sums_take = search_start;
     assign direction_take = search_start;
 
     sptfra_joint_stages #(
-        .LOOK (NETWORK)
+        .FEATURES (NETWORK)
     ) stages (
         .clock            (clock),
         .reset            (reset),
@@ -145,12 +145,12 @@ module sptfra_estimator_joint #(
         .sums_complete    (sums_complete),
         .contact_valid    (direction_valid),
         .search_done      (level_done),
-        .look_done        (centre_done),
+        .features_done    (centre_done),
         .window_done      (window_done),
         .correction_done  (search_done),
         .answer_take      (answer_take),
         .search_start     (search_start),
-        .look_start       (look_start),
+        .features_start   (features_start),
         .correction_start (correction_start),
         .answer_valid     (answer_valid),
         .u_released       (u_released),
@@ -164,18 +164,18 @@ module sptfra_estimator_joint #(
     reg [18*40-1:0] search_sums;
     reg [5:0] search_flags;
     wire signed [17:0] found_x, found_y;
-    wire found_unknown, found_on_border, found_saturated, look_saturated;
+    wire found_unknown, found_on_border, found_saturated, features_saturated;
     localparam integer WITH_FOUND = 2 * 18 + 3; // what the search found
     localparam integer WITH_FRAME = 18 * 40 + 6 + 18 + WITH_FOUND;
     wire signed [17:0] found_error;
     wire [WITH_FRAME-1:0] searched = {search_sums, search_flags, found_error, found_x, found_y, found_unknown,
         found_on_border, found_saturated};
-    wire [WITH_FRAME-1:0] seen; // of the frame in the look, or that was searched
+    wire [WITH_FRAME-1:0] seen; // of the frame in the features, or that was searched
     reg signed [17:0] centroid_x, centroid_y;
-    reg on_border, before_saturated; // a value of search or look was clipped
+    reg on_border, before_saturated; // a value of search or features was clipped
     reg correction_started;
     reg signed [17:0] frame_error;
-    wire signed [17:0] look_x = seen[WITH_FOUND-18 +: 18], look_y = seen[WITH_FOUND-36 +: 18];
+    wire signed [17:0] features_x = seen[WITH_FOUND-18 +: 18], features_y = seen[WITH_FOUND-36 +: 18];
 
     always @(posedge clock) begin
         if (search_start) begin
@@ -186,7 +186,7 @@ module sptfra_estimator_joint #(
         end
         if (correction_start) begin
             {centroid_x, centroid_y, unknown, on_border, before_saturated} <= seen[WITH_FOUND-1:0]
-                | { {(WITH_FOUND - 1){1'b0}}, look_saturated};
+                | { {(WITH_FOUND - 1){1'b0}}, features_saturated};
         end
         // What was seen stays for a cycle more, and the answer comes twenty later or more
         correction_started <= correction_start;
@@ -256,63 +256,63 @@ module sptfra_estimator_joint #(
         end
     endgenerate
 
-    // ---- Look and correction
+    // ---- Features and correction
     wire correction_done, clipped;
     wire signed [17:0] correction_x, correction_y;
 
     generate
         if (NETWORK != 0) begin : gen_correction
-            reg [WITH_FRAME-1:0] look_frame;
+            reg [WITH_FRAME-1:0] features_frame;
 
-            assign seen = look_frame;
+            assign seen = features_frame;
             always @(posedge clock) begin
-                if (look_start) begin
-                    look_frame <= searched;
+                if (features_start) begin
+                    features_frame <= searched;
                 end
             end
 
             sptfra_correction #(
-                .COLUMNS                  (COLUMNS),
-                .ROWS                     (ROWS),
-                .HALF_X                   (HALF_X),
-                .HALF_Y                   (HALF_Y),
-                .LENGTH                   (LENGTH),
-                .PASSES                   (PASSES),
-                .AT_ONCE                  (AT_ONCE),
-                .STRESS_LEFT              (STRESS_LEFT),
-                .UNIT_SHIFT               (UNIT_SHIFT),
-                .CORRECTION_SHIFT         (CORRECTION_SHIFT),
-                .ROM_DIR                  (ROM_DIR),
-                .ROM_NAME                 (ROM_NAME),
-                .EXPECTED_LOOK_LATENCY    (EXPECTED_LOOK_LATENCY),
-                .EXPECTED_NETWORK_LATENCY (EXPECTED_NETWORK_LATENCY)
+                .COLUMNS                   (COLUMNS),
+                .ROWS                      (ROWS),
+                .HALF_X                    (HALF_X),
+                .HALF_Y                    (HALF_Y),
+                .LENGTH                    (LENGTH),
+                .PASSES                    (PASSES),
+                .AT_ONCE                   (AT_ONCE),
+                .STRESS_LEFT               (STRESS_LEFT),
+                .UNIT_SHIFT                (UNIT_SHIFT),
+                .CORRECTION_SHIFT          (CORRECTION_SHIFT),
+                .ROM_DIR                   (ROM_DIR),
+                .ROM_NAME                  (ROM_NAME),
+                .EXPECTED_FEATURES_LATENCY (EXPECTED_FEATURES_LATENCY),
+                .EXPECTED_NETWORK_LATENCY  (EXPECTED_NETWORK_LATENCY)
             ) correction (
-                .clock        (clock),
-                .reset        (reset),
-                .read_valid   (read_valid),
-                .read_quad    (read_quad),
-                .read_values  (read_values),
-                .search_start (search_start),
-                .stress_sum   (search_stress_sum),
-                .look_start   (look_start),
-                .mu_x         (look_x),
-                .mu_y         (look_y),
-                .look_done    (centre_done),
-                .saturated    (look_saturated),
-                .start        (correction_start),
-                .window_done  (window_done),
-                .done         (correction_done),
-                .correction_x (correction_x),
-                .correction_y (correction_y)
+                .clock          (clock),
+                .reset          (reset),
+                .read_valid     (read_valid),
+                .read_quad      (read_quad),
+                .read_values    (read_values),
+                .search_start   (search_start),
+                .stress_sum     (search_stress_sum),
+                .features_start (features_start),
+                .mu_x           (features_x),
+                .mu_y           (features_y),
+                .features_done  (centre_done),
+                .saturated      (features_saturated),
+                .start          (correction_start),
+                .window_done    (window_done),
+                .done           (correction_done),
+                .correction_x   (correction_x),
+                .correction_y   (correction_y)
             );
         end else begin : gen_none
             assign seen = searched;
-            assign {centre_done, window_done, correction_done, look_saturated} = 4'd0;
+            assign {centre_done, window_done, correction_done, features_saturated} = 4'd0;
             assign {correction_x, correction_y} = 36'd0;
 
-            wire _unused = &{1'b0, look_start, look_x, look_y, read_valid, read_quad, read_values,
+            wire _unused = &{1'b0, features_start, features_x, features_y, read_valid, read_quad, read_values,
                 HALF_X != 0, HALF_Y != 0, LENGTH != 0, PASSES != 0, STRESS_LEFT != 0, UNIT_SHIFT != 0,
-                CORRECTION_SHIFT != 0, EXPECTED_LOOK_LATENCY != 0,
+                CORRECTION_SHIFT != 0, EXPECTED_FEATURES_LATENCY != 0,
                 EXPECTED_NETWORK_LATENCY != 0, AT_ONCE != 0, ROM_DIR == "", ROM_NAME == ""};
         end
     endgenerate

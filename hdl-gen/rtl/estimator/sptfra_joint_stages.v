@@ -3,16 +3,16 @@
 //
 // Which frame is where in the grid search: three stages, each with a frame of its own.
 //
-// The search takes a frame a cycle after its u_q, its sums and what CeAn knows are there; the look what the search has
-// found, the correction what the look has. A stage holds what it found until the next one takes it, and may begin anew
-// in the cycle after; but the look shows the correction its window first. Without a look the correction comes after
-// the search.
+// The search takes a frame a cycle after its u_q, its sums and what CeAn knows are there; the features what the search
+// has found, the correction what the features have. A stage holds what it found until the next one takes it, and may
+// begin anew in the cycle after; but the features show the correction their window first. Without features the
+// correction comes after the search.
 
 `default_nettype none
 
 module sptfra_joint_stages #(
-    // 1: there is a look; 0: none
-    parameter integer LOOK = 1
+    // 1: features for a network; 0: none
+    parameter integer FEATURES = 1
 ) (
     input  wire clock,
     input  wire reset,
@@ -21,15 +21,15 @@ module sptfra_joint_stages #(
     input  wire u_complete,
     input  wire sums_complete,
     input  wire contact_valid,
-    // Ends, one cycle each: of the search, of the look, of the window that it shows, of the correction
+    // Ends, one cycle each: of the search, of the features, of the window that they show, of the correction
     input  wire search_done,
-    input  wire look_done,
+    input  wire features_done,
     input  wire window_done,
     input  wire correction_done,
     input  wire answer_take, // only with answer_valid
     // Starts, one cycle each
     output reg  search_start, // a register: it lets all of the frame's 800 bits in, and others out
-    output wire look_start,
+    output wire features_start,
     output wire correction_start,
     output wire answer_valid,
     // One cycle: the search needs the u_q of its frame no more
@@ -40,28 +40,28 @@ module sptfra_joint_stages #(
 );
 
     generate
-        if ((LOOK != 0) && (LOOK != 1)) begin : gen_check
-            sptfra_error_there_is_a_look_or_none invalid ();
+        if ((FEATURES != 0) && (FEATURES != 1)) begin : gen_check
+            sptfra_error_there_are_features_or_none invalid ();
         end
     endgenerate
 
     reg [1:0] u_waiting; // frames whose u_q wait to be searched
     reg searching;
-    reg centroid_waits; // for the look
-    reg looking; // until the correction takes what was found
+    reg centroid_waits; // for the features
+    reg extracting; // until the correction takes what was found
     reg showing; // the window, to the correction
     reg centre_waits; // for the correction
     reg correcting;
     reg answer_waits; // to be taken
     wire centroid_there = search_done || centroid_waits;
 
-    wire search_free = searching ? look_start : !search_start; // in the next cycle
+    wire search_free = searching ? features_start : !search_start; // in the next cycle
     wire u_there = u_complete || (u_waiting != 2'd0);
 
-    assign look_start = centroid_there && ((LOOK != 0) ? !looking && !showing : !correcting);
-    assign correction_start = (LOOK != 0) ? (look_done || centre_waits) && !correcting : look_start;
+    assign features_start = centroid_there && ((FEATURES != 0) ? !extracting && !showing : !correcting);
+    assign correction_start = (FEATURES != 0) ? (features_done || centre_waits) && !correcting : features_start;
     assign answer_valid = correction_done || answer_waits;
-    assign u_released = look_start;
+    assign u_released = features_start;
 
     always @(posedge clock) begin
         search_start <= sums_complete && contact_valid && u_there && search_free;
@@ -75,21 +75,21 @@ module sptfra_joint_stages #(
         if (search_done) begin
             centroid_waits <= 1'b1;
         end
-        if (look_start) begin
+        if (features_start) begin
             searching <= 1'b0;
             centroid_waits <= 1'b0;
             search_bank <= !search_bank;
-            looking <= (LOOK != 0);
+            extracting <= (FEATURES != 0);
         end
-        if (look_done) begin
+        if (features_done) begin
             centre_waits <= 1'b1;
         end
         if (window_done) begin
             showing <= 1'b0;
         end
         if (correction_start) begin
-            looking <= 1'b0;
-            showing <= (LOOK != 0);
+            extracting <= 1'b0;
+            showing <= (FEATURES != 0);
             centre_waits <= 1'b0;
             correcting <= 1'b1;
         end
@@ -107,7 +107,7 @@ module sptfra_joint_stages #(
             search_bank <= 1'b0;
             searching <= 1'b0;
             centroid_waits <= 1'b0;
-            looking <= 1'b0;
+            extracting <= 1'b0;
             showing <= 1'b0;
             centre_waits <= 1'b0;
             correcting <= 1'b0;

@@ -12,7 +12,7 @@ use crate::support::shipped;
 /// The device of the board in `hdl-gen/boards` that has one.
 const PART: &str = "xc7z020clg400-1";
 
-/// The grid search with its correction on 4 x 3 taxels: lanes, field, look, network, points, friction and summary.
+/// The grid search with its correction on 4 x 3 taxels: lanes, field, features, network, points, friction and summary.
 fn plan(data_bits: u32) -> Plan {
     let mut design: Design = shipped("small-joint");
     PART.clone_into(&mut design.hardware.part);
@@ -57,7 +57,7 @@ fn a_longer_vector_takes_two_in_lanes_and_field() {
     for (name, with_25, with_27) in [
         ("lanes", (4, 4), (4, 8)),
         ("field", (1, 1), (1, 2)),
-        ("look", (6, 12), (6, 12)),
+        ("features", (6, 12), (6, 12)),
         ("friction", (1, 2), (1, 2)),
         ("summary", (1, 2), (1, 2)),
         // Five squares of 17 bits, and two moments of the grid search.

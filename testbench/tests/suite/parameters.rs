@@ -41,7 +41,7 @@ const SENSELESS: [(&str, &str, &str, &str); 36] = [
     ("registers", "SAMPLES", "3", "samples_are_float32_int16_or_uint16"),
     ("field", "COLUMNS", "65", "columns_and_rows_must_be_2_to_64"),
     ("estimator_line", "WAYS", "2", "ways_must_be_1_or_4"),
-    ("joint_stages", "LOOK", "2", "there_is_a_look_or_none"),
+    ("joint_stages", "FEATURES", "2", "there_are_features_or_none"),
     ("network", "AT_ONCE", "5", "4_8_or_16_hidden_units_are_worked_on_at_once"),
     ("estimator_joint", "WAYS", "1", "the_joint_estimator_needs_four_ways"),
 ];

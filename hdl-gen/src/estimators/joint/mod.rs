@@ -36,7 +36,7 @@ pub const FACTOR_FRACTION: u32 = 21;
 pub const CORRECTION_LIMIT: i64 = (LARGEST * ONE) as i64;
 /// Left of a pitch from where a contact's centre belongs to the second of two taxels, in the steps of the friction.
 pub const CENTRE_HALF: i64 = (ONE / 2.0 + TIE * ONE) as i64;
-/// Width of `u_q` where it waits for the look.
+/// Width of `u_q` where it waits for the features.
 const U_BITS: u32 = LONG_BITS;
 /// One, in the steps of the friction.
 const ONE: f64 = (1_u32 << FRICTION_FRACTION) as f64;
@@ -109,9 +109,9 @@ impl Slot for JointPlan {
         let mut blocks = vec![search.narrow(self.search.weighed()).with([taxels()])];
         if let Some(network) = &self.network {
             // The stresses of a quad, and two of their shares of all.
-            let look = BlockCost::new("look", &["sptfra_look"], CLASSES + 2);
+            let features = BlockCost::new("features", &["sptfra_features"], CLASSES + 2);
             // Each member of a place in the window may be in any quarter of the grid.
-            blocks.push(look.with([handed_on(), memory("look", CLASSES * CLASSES, rows, STRESS_BITS, false)]));
+            blocks.push(features.with([handed_on(), memory("features", CLASSES * CLASSES, rows, STRESS_BITS, false)]));
             // The hidden units' four classes, and both components.
             let units = BlockCost::new("network", &["sptfra_network"], CLASSES * network.at_once + READOUTS);
             let width = WEIGHT_BITS * classes * network.at_once as u32;
@@ -171,7 +171,7 @@ impl Slot for JointPlan {
             .number("CORRECTION_SHIFT", network.correction_shift.into())
             .outer("ROM_DIR")
             .text("ROM_NAME", &design.name)
-            .cycles("EXPECTED_LOOK_LATENCY", timing::look(&design.sensor))
+            .cycles("EXPECTED_FEATURES_LATENCY", timing::features(&design.sensor))
             .cycles("EXPECTED_NETWORK_LATENCY", timing::network(network))
     }
 

@@ -1,7 +1,7 @@
 //! The network of the correction in integers: weights by parity, formats that its sums cannot leave.
 //!
-//! A mirrored look changes the signs of what is odd in x or y. So the window is folded into parity classes, the
-//! weights too, and one pass over the weights gives the four sums from which the hidden units of all four looks follow.
+//! A mirrored window changes the signs of what is odd in x or y. So the window is folded into parity classes, the
+//! weights too, and one pass over the weights gives the four sums from which the hidden units of all four images follow.
 
 use golden::estimators::joint::{Correction, EXTRA_INPUTS, STRESS_SCALE, WEIGHT_FRACTION, WEIGHT_LIMIT};
 use golden::parity::{CLASSES, sign};
@@ -117,7 +117,7 @@ impl NetworkPlan {
         let [along_x, along_y] = chosen;
         let readout: Vec<[i32; 2]> = along_x.into_iter().zip(along_y).map(|(x, y)| [x, y]).collect();
 
-        // Of the output: the mean over four looks.
+        // Of the output: the mean over four images.
         let fraction = INPUT_FRACTION as i32 - weight_lsb - unit_shift as i32 - readout_lsb + 2;
         Self {
             half_window,
@@ -212,11 +212,11 @@ fn stress_left(coarser: i32) -> u32 {
 mod tests {
     use super::*;
 
-    /// A hidden unit of a mirrored look, from the look itself and the weights by parity.
+    /// A hidden unit of a mirrored window, from the window itself and the weights by parity.
     #[test]
     fn the_parities_give_the_units_of_every_mirror_image() {
         let row: Vec<i32> = (0..20).map(|index| 37 * index * index - 501 * index + 100).collect();
-        let look: Vec<f64> = (0..20).map(|index| f64::from(index * 7 % 11) - 4.5).collect();
+        let features: Vec<f64> = (0..20).map(|index| f64::from(index * 7 % 11) - 4.5).collect();
         let words = by_parity(&row, [1, 2]);
         for signs in 0..CLASSES {
             let mut direct = 0.0;
@@ -225,13 +225,13 @@ mod tests {
                 for x in 0..3 {
                     let from_x = if signs & 1 == 1 { 2 - x } else { x };
                     let from_y = if signs & 2 == 2 { 4 - y } else { y };
-                    direct += f64::from(row[y * 3 + x]) * look[from_y * 3 + from_x];
+                    direct += f64::from(row[y * 3 + x]) * features[from_y * 3 + from_x];
                 }
             }
             let sign_x = if signs & 1 == 1 { -1.0 } else { 1.0 };
             let sign_y = if signs & 2 == 2 { -1.0 } else { 1.0 };
             for (index, sign) in [sign_x, sign_y, sign_x, sign_y, 1.0].into_iter().enumerate() {
-                direct += f64::from(row[15 + index]) * sign * look[15 + index];
+                direct += f64::from(row[15 + index]) * sign * features[15 + index];
             }
             for class in 0..CLASSES {
                 let of_class = sign(class, signs);
@@ -244,12 +244,12 @@ mod tests {
                             }
                             let column = if member & 1 == 1 { 1 - x } else { 1 + x };
                             let line = if member & 2 == 2 { 2 - y } else { 2 + y };
-                            input += sign(class, member) * look[line * 3 + column];
+                            input += sign(class, member) * features[line * 3 + column];
                         }
                         folded += of_class * words[y * 2 + x][class] * input;
                     }
                 }
-                let extras = [[look[19], look[15], look[16], 0.0], [0.0, look[17], look[18], 0.0]];
+                let extras = [[features[19], features[15], features[16], 0.0], [0.0, features[17], features[18], 0.0]];
                 folded += of_class * (words[6][class] * extras[0][class] + words[7][class] * extras[1][class]);
             }
             assert!((direct / 4096.0 - folded).abs() < 1e-9, "{signs}: {direct} {folded}");

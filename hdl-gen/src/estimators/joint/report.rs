@@ -58,8 +58,8 @@ fn stages(plan: &JointPlan, design: &Design) -> String {
     let cycles: Vec<u64> = timing::stages(sensor, plan).iter().map(|stage| stage.cycles).collect();
     let level = plan.search.level(sensor);
     let after = match (&plan.network, &cycles[1..]) {
-        (Some(network), [look, correction]) => format!(
-            "  look         {look} cycles, and a window of {}\n  correction   {correction} cycles: first word of the window {}, network {}, friction {}\n",
+        (Some(network), [features, correction]) => format!(
+            "  features     {features} cycles, and a window of {}\n  correction   {correction} cycles: first word of the window {}, network {}, friction {}\n",
             timing::window(network),
             timing::FIRST_WORD,
             timing::network(network),

@@ -16,7 +16,7 @@ pub const CORRECTED: u64 = 2;
 pub const FIRST_WORD: u64 = 11;
 
 /// Centroid of the level set to that of the contact: two cycles a quad, the divisions.
-pub fn look(sensor: &Sensor) -> u64 {
+pub fn features(sensor: &Sensor) -> u64 {
     2 * quads(sensor) + 33
 }
 
@@ -30,15 +30,15 @@ pub fn network(network: &NetworkPlan) -> u64 {
     (network.weights.len() + network.at_once) as u64 + 14
 }
 
-/// The stages, each with a frame of its own: the grid search, the look, and the correction from its window to the
-/// friction. Without a network there is no look.
+/// The stages, each with a frame of its own: the grid search, the features, and the correction from its window to the
+/// friction. Without a network there are no features.
 pub fn stages(sensor: &Sensor, plan: &JointPlan) -> Vec<Stage> {
     let stage = |cycles| Stage { cycles, shows: 0 };
     let search = stage(plan.search.cycles(sensor));
     match &plan.network {
         Some(of) => {
-            let look = Stage { cycles: look(sensor), shows: window(of) };
-            vec![search, look, stage(FIRST_WORD + network(of) + CORRECTED)]
+            let features = Stage { cycles: features(sensor), shows: window(of) };
+            vec![search, features, stage(FIRST_WORD + network(of) + CORRECTED)]
         }
         None => vec![search, stage(FRICTION)],
     }

@@ -1,6 +1,6 @@
 //! Op's friction in integers: grid search, correction, both components at once.
 
-mod look;
+mod features;
 mod network;
 mod search;
 
@@ -14,9 +14,9 @@ pub fn friction(joint: &JointPlan, seen: &Seen) -> Found {
     let mut found = Found { unknown: centroid.unknown, at_bound: centroid.on_border, ..Found::default() };
     let mut correction = [0; 2];
     if let Some(network) = &joint.network {
-        let look = look::take(network, seen, centroid.mu);
-        found.saturated = look.saturated;
-        correction = network::correction(network, &look.inputs);
+        let features = features::take(network, seen, centroid.mu);
+        found.saturated = features.saturated;
+        correction = network::correction(network, &features.inputs);
     }
     found.saturated = (found.saturated || centroid.saturated) && !centroid.unknown;
     let exact = scaled(joint, centroid.mu);

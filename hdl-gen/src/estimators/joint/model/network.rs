@@ -5,7 +5,7 @@ use golden::parity::CLASSES;
 use super::super::{CORRECTION_LIMIT, NetworkPlan};
 use crate::plan::format::round_shift;
 
-/// The correction of both friction components for a look's inputs by word and class.
+/// The correction of both friction components for the features by word and class.
 pub fn correction(network: &NetworkPlan, inputs: &[[i64; CLASSES]]) -> [i64; 2] {
     let mut sums = [0; 2];
     for (pass, weights) in network.weights.chunks(network.length).enumerate() {
@@ -17,8 +17,8 @@ pub fn correction(network: &NetworkPlan, inputs: &[[i64; CLASSES]]) -> [i64; 2] 
             };
             let [a, b, c, d] = std::array::from_fn(class);
             // Of the four mirror images, then their hinges, mirrored back.
-            let looks = [a + b + c + d, a - b + c - d, a + b - c - d, a - b - c + d];
-            let [a, b, c, d] = looks.map(|sum| sum.max(0));
+            let images = [a + b + c + d, a - b + c - d, a + b - c - d, a - b - c + d];
+            let [a, b, c, d] = images.map(|sum| sum.max(0));
             sums[0] += i64::from(readout[0]) * (a - b + c - d);
             sums[1] += i64::from(readout[1]) * (a + b - c - d);
         }

@@ -47,17 +47,17 @@ const JOINT_BROKEN: &[Broken] = &[
     ("turns", "(residuals_there != 2'd0) && friction_known", "(residuals_there != 2'd0)"),
     ("sptfra_estimator_joint", "assign sums_take = search_start;", "assign sums_take = answer_take;"),
     ("sptfra_joint_stages", "u_there && search_free", "search_free"),
-    ("sptfra_joint_stages", "searching ? look_start : !search_start", "searching ? look_start : 1'b1"),
-    ("sptfra_joint_stages", "searching ? look_start : !search_start", "!search_start"),
-    ("sptfra_joint_stages", "!looking && !showing : !correcting", "!looking && !showing : 1'b1"),
+    ("sptfra_joint_stages", "searching ? features_start : !search_start", "searching ? features_start : 1'b1"),
+    ("sptfra_joint_stages", "searching ? features_start : !search_start", "!search_start"),
+    ("sptfra_joint_stages", "!extracting && !showing : !correcting", "!extracting && !showing : 1'b1"),
     ("sptfra_joint_stages", "            search_bank <= !search_bank;\n", ""),
     ("sptfra_joint_stages", "            centroid_waits <= 1'b0;\n            search_bank", "            search_bank"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
 ];
-const LOOK_BROKEN: &[Broken] = &[
-    ("sptfra_joint_stages", "centre_waits) && !correcting : look_start", "centre_waits) : look_start"),
-    ("sptfra_joint_stages", "!looking && !showing : !correcting", "!showing : !correcting"),
-    ("sptfra_joint_stages", "!looking && !showing : !correcting", "!looking : !correcting"),
+const FEATURES_BROKEN: &[Broken] = &[
+    ("sptfra_joint_stages", "centre_waits) && !correcting : features_start", "centre_waits) : features_start"),
+    ("sptfra_joint_stages", "!extracting && !showing : !correcting", "!showing : !correcting"),
+    ("sptfra_joint_stages", "!extracting && !showing : !correcting", "!extracting : !correcting"),
     (
         "sptfra_joint_stages",
         "            centre_waits <= 1'b0;\n            correcting <= 1'b1",
@@ -164,7 +164,7 @@ pub const PROOFS: &[Proof] = &[
         name: "frame handshake, grid search with a correction",
         harness: "reduced",
         design: corrected,
-        defines: &["JOINT", "LOOK"],
+        defines: &["JOINT", "FEATURES"],
         top: "subject",
         parameters: "",
         models: &[("sptfra_spmv_array", "reduced_lanes")],
@@ -172,7 +172,7 @@ pub const PROOFS: &[Proof] = &[
         free_wires: &["turns.residual_written"],
         induction: "5",
         altered: &[],
-        broken: &[("sptfra_joint_stages", "u_released = look_start;", "u_released = search_start;")],
+        broken: &[("sptfra_joint_stages", "u_released = features_start;", "u_released = search_start;")],
     },
     Proof {
         name: "frame handshake, resultants only by the grid search with a correction",
@@ -186,7 +186,7 @@ pub const PROOFS: &[Proof] = &[
         free_wires: &[],
         induction: "5",
         altered: &[],
-        broken: LOOK_BROKEN,
+        broken: FEATURES_BROKEN,
     },
     Proof {
         name: "frame handshake, resultants only",

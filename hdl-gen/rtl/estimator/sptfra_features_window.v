@@ -9,7 +9,7 @@
 
 `default_nettype none
 
-module sptfra_look_window #(
+module sptfra_features_window #(
     // Taxels along x
     parameter integer COLUMNS = 10,
     // Taxels along y

@@ -9,7 +9,7 @@
 
 `default_nettype none
 
-module sptfra_look_stress #(
+module sptfra_features_stress #(
     // Taxels along x
     parameter integer COLUMNS = 10,
     // Taxels along y

@@ -11,15 +11,15 @@ use crate::plan::format::{FRICTION_FRACTION, SUM_BITS, largest, round_shift};
 const CENTRE_FRACTION: u32 = FRICTION_FRACTION;
 
 /// The network's inputs.
-pub struct Look {
+pub struct Features {
     /// By word and class, [`INPUT_FRACTION`] fraction bits.
     pub inputs: Vec<[i64; CLASSES]>,
     /// A value of the frame was clipped.
     pub saturated: bool,
 }
 
-/// Takes the look at the friction `mu`.
-pub fn take(network: &NetworkPlan, seen: &Seen, mu: [i64; 2]) -> Look {
+/// Computes the features at the friction `mu`.
+pub fn take(network: &NetworkPlan, seen: &Seen, mu: [i64; 2]) -> Features {
     let (columns, rows) = (seen.sensor.columns, seen.sensor.rows);
     let (u, stress_sum) = (seen.u, seen.contact.stress_sum);
     let sum_bits = 64 - stress_sum.leading_zeros();
@@ -70,7 +70,7 @@ pub fn take(network: &NetworkPlan, seen: &Seen, mu: [i64; 2]) -> Look {
     let [left_x, left_y] = [0, 1].map(|axis| (centroid[axis] - (centre[axis] << CENTRE_FRACTION)) << finer);
     inputs.extend([[1 << INPUT_FRACTION, mu_x, mu_y, 0], [0, left_x, left_y, 0]]);
     inputs.resize(network.length, [0; CLASSES]);
-    Look { inputs, saturated }
+    Features { inputs, saturated }
 }
 
 /// `1 / sum` as a factor of `2^-(RECIPROCAL_BITS + sum_bits)`; it has 17 significant bits.

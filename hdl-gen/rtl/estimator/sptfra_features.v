@@ -5,12 +5,12 @@
 //
 // Along its way: scale (1 / sum |b|, during the grid search), stress (a quad in two cycles, its compression's
 // moments), their centroid; when the network is free for it the window (folded into parity classes). While one frame is
-// looked at the next one may start. From look_start to look_done: two cycles a quad, and 33; from window_start to
-// window_done: 10, and one a word.
+// in the window the next one may start. From features_start to features_done: two cycles a quad, and 33; from
+// window_start to window_done: 10, and one a word.
 
 `default_nettype none
 
-module sptfra_look #(
+module sptfra_features #(
     // Taxels along x
     parameter integer COLUMNS = 10,
     // Taxels along y
@@ -26,7 +26,7 @@ module sptfra_look #(
     parameter integer WORD_WIDTH = 5,
     // Left shift of a stress times the reciprocal, before the right shift by the bits of sum |b|
     parameter integer STRESS_LEFT = 9,
-    // From look_start to look_done, checked in simulation; 0: unchecked
+    // From features_start to features_done, checked in simulation; 0: unchecked
     parameter integer EXPECTED_LATENCY = 0
 ) (
     input  wire clock,
@@ -35,14 +35,14 @@ module sptfra_look #(
     input  wire start,
     input  wire [39:0] stress_sum,
     // It is, and held from the next cycle on until the window is done
-    input  wire look_start,
+    input  wire features_start,
     input  wire signed [17:0] mu_x,
     input  wire signed [17:0] mu_y,
     // u_q of a quad's taxels, a cycle after they are asked for
     output wire [ROW_WIDTH-1:0] u_quad,
     input  wire [3*4*27-1:0] u_values,
-    output wire look_done, // one cycle: the contact's centre is there, and held
-    output wire saturated, // a share was clipped; held until the next look
+    output wire features_done, // one cycle: the contact's centre is there, and held
+    output wire saturated, // a share was clipped; held until the next features
     // Inputs of the network
     input  wire window_start,
     output wire input_valid,
@@ -56,13 +56,13 @@ module sptfra_look #(
     localparam integer CENTRE_BITS = 22;
     localparam integer TAXEL_BITS = 6;
 
-    // ---- Scale: of the frame that is searched, then of the one that is looked at
+    // ---- Scale: of the frame that is searched, then of the one whose features are computed
     wire [5:0] next_sum_bits;
     wire signed [17:0] next_reciprocal;
     reg [5:0] sum_bits;
     reg signed [17:0] reciprocal;
 
-    sptfra_look_scale scale (
+    sptfra_features_scale scale (
         .clock      (clock),
         .reset      (reset),
         .start      (start),
@@ -72,7 +72,7 @@ module sptfra_look #(
     );
 
     always @(posedge clock) begin
-        if (look_start) begin
+        if (features_start) begin
             sum_bits <= next_sum_bits;
             reciprocal <= next_reciprocal;
         end
@@ -87,7 +87,7 @@ module sptfra_look #(
     wire [47:0] moment_x;
     wire [47:0] moment_y;
 
-    sptfra_look_stress #(
+    sptfra_features_stress #(
         .COLUMNS     (COLUMNS),
         .ROWS        (ROWS),
         .ROW_WIDTH   (ROW_WIDTH),
@@ -97,7 +97,7 @@ module sptfra_look #(
         .reset       (reset),
         .sum_bits    (sum_bits),
         .reciprocal  (reciprocal),
-        .start       (look_start),
+        .start       (features_start),
         .mu_x        (mu_x),
         .mu_y        (mu_y),
         .u_quad      (u_quad),
@@ -128,13 +128,13 @@ module sptfra_look #(
         .numerator_x (moment_x),
         .numerator_y (moment_y),
         .denominator (weight_sum),
-        .done        (look_done),
+        .done        (features_done),
         .quotient_x  (ratio_x),
         .quotient_y  (ratio_y)
     );
 
     // ---- Window
-    sptfra_look_window #(
+    sptfra_features_window #(
         .COLUMNS    (COLUMNS),
         .ROWS       (ROWS),
         .ROW_WIDTH  (ROW_WIDTH),
@@ -166,8 +166,8 @@ module sptfra_look #(
     ) check_latency (
         .clock (clock),
         .reset (reset),
-        .start (look_start),
-        .done  (look_done)
+        .start (features_start),
+        .done  (features_done)
     );
 `else
     wire _unused_check = (EXPECTED_LATENCY != 0);

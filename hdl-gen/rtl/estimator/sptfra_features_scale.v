@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The scale of a look: 1 / sum |b|, during the grid search.
+// The scale of the features: 1 / sum |b|, during the grid search.
 //
 // The leading bit of sum |b| goes to the top, then 2^56 is divided by it: the reciprocal of 17 bits is there 8 cycles
 // and a division after start.
 
 `default_nettype none
 
-module sptfra_look_scale (
+module sptfra_features_scale (
     input  wire clock,
     input  wire reset,
     // Reciprocal: sum |b| is held from the cycle after start on
