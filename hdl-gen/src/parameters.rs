@@ -48,6 +48,8 @@ pub enum Value {
     },
     /// A text, such as the name of a file.
     Text(String),
+    /// Texts of as many characters each, the first in the lowest bits.
+    Texts(Vec<String>),
     /// The parameter of this name of the module around the instance.
     Outer,
 }
@@ -144,6 +146,12 @@ impl Parameters {
     #[must_use]
     pub fn text(self, name: &'static str, text: impl Into<String>) -> Self {
         self.with(name, Value::Text(text.into()))
+    }
+
+    /// Texts of as many characters each, the first in the lowest bits.
+    #[must_use]
+    pub fn texts(self, name: &'static str, texts: Vec<String>) -> Self {
+        self.with(name, Value::Texts(texts))
     }
 
     /// The parameter of the same name of the module around the instance.

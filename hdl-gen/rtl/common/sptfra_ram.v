@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Memory with one write port and one read port, both synchronous.
+// Memory with one write port and one read port, both synchronous, filled from FILE by $readmemh when the device is
+// configured; undefined without a FILE. A ROM is one whose write port is tied off.
 //
 // Latency: 1 cycle from read_address to read_data, held while read_enable is low. A word must not be used that is read
 // in the cycle in which it is written: what a block memory answers then differs from fabric to fabric, and a tool that
@@ -15,7 +16,11 @@ module sptfra_ram #(
     // Words
     parameter DEPTH = 512,
     // Bits of an address
-    parameter ADDRESS_WIDTH = 9
+    parameter ADDRESS_WIDTH = 9,
+    // Prefix of the file name, for instance a directory with its slash
+    parameter ROM_DIR = "",
+    // Hexadecimal words, one a line, as many as DEPTH
+    parameter FILE = ""
 ) (
     input  wire                     clock,
     input  wire                     write_enable,
@@ -27,6 +32,15 @@ module sptfra_ram #(
 );
 
     (* no_rw_check *) reg [WIDTH-1:0] memory [0:DEPTH-1];
+
+    generate
+        if (FILE != "" && ROM_DIR != "") begin : gen_contents
+            initial $readmemh({ROM_DIR, FILE}, memory);
+        end else if (FILE != "") begin : gen_contents_here
+            // An empty prefix would put a null character before the name
+            initial $readmemh(FILE, memory);
+        end
+    endgenerate
 
     always @(posedge clock) begin
         if (write_enable) begin

@@ -38,19 +38,23 @@ module sptfra_rom #(
     genvar bank;
     generate
         if (BANKS == 1) begin : gen_whole
-            sptfra_rom_bank #(
+            sptfra_ram #(
                 .WIDTH         (WIDTH),
                 .DEPTH         (DEPTH),
                 .ADDRESS_WIDTH (ADDRESS_WIDTH),
                 .ROM_DIR       (ROM_DIR),
                 .FILE          (FILE)
             ) whole (
-                .clock   (clock),
-                .enable  (enable),
-                .address (address),
-                .data    (data)
+                .clock         (clock),
+                .write_enable  (1'b0),
+                .write_address ({ADDRESS_WIDTH{1'b0}}),
+                .write_data    ({WIDTH{1'b0}}),
+                .read_enable   (enable),
+                .read_address  (address),
+                .read_data     (data)
             );
         end else begin : gen_banks
+            localparam [79:0] DIGITS = "9876543210"; // 0 in the lowest bits
             wire [WIDTH*BANKS-1:0] words;
             reg  [BANKS-1:0] chosen;
             reg  [WIDTH-1:0] either;
@@ -59,22 +63,23 @@ module sptfra_rom #(
             for (bank = 0; bank < BANKS; bank = bank + 1) begin : gen_bank
                 localparam WORDS = (bank == BANKS - 1) ? DEPTH - bank * BANK : BANK;
                 localparam WORDS_WIDTH = (WORDS > 2) ? $clog2(WORDS) : 1;
-                // The bank's number, in bits and as two characters
                 localparam [ADDRESS_WIDTH-BANK_WIDTH-1:0] NUMBER = bank;
-                localparam [7:0] TENS = 8'd48 + bank / 10;
-                localparam [7:0] ONES = 8'd48 + bank % 10;
+                localparam [15:0] TEXT = {DIGITS[8*(bank/10) +: 8], DIGITS[8*(bank%10) +: 8]};
 
-                sptfra_rom_bank #(
+                sptfra_ram #(
                     .WIDTH         (WIDTH),
                     .DEPTH         (WORDS),
                     .ADDRESS_WIDTH (WORDS_WIDTH),
                     .ROM_DIR       (ROM_DIR),
-                    .FILE          ((FILE == "") ? "" : {"bank", TENS, ONES, "_", FILE})
+                    .FILE          ((FILE == "") ? "" : {"bank", TEXT, "_", FILE})
                 ) of_bank (
-                    .clock   (clock),
-                    .enable  (enable),
-                    .address (address[WORDS_WIDTH-1:0]),
-                    .data    (words[WIDTH*bank +: WIDTH])
+                    .clock         (clock),
+                    .write_enable  (1'b0),
+                    .write_address ({WORDS_WIDTH{1'b0}}),
+                    .write_data    ({WIDTH{1'b0}}),
+                    .read_enable   (enable),
+                    .read_address  (address[WORDS_WIDTH-1:0]),
+                    .read_data     (words[WIDTH*bank +: WIDTH])
                 );
 
                 always @(posedge clock) begin

@@ -191,11 +191,11 @@ module sptfra_bz #(
     wire [77:0] line;
     wire [27*SAMPLES-1:0] read;
     wire [SAMPLES-1:0] read_saturated, read_not_finite;
+    localparam [63:0] DIGITS = "76543210"; // 0 in the lowest bits
     genvar sample;
 
     generate
         for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_samples
-            localparam [7:0] DIGIT = 48 + sample;
             wire signed [26:0] fixed;
 
             assign read[27*sample +: 27] = fixed;
@@ -219,7 +219,7 @@ module sptfra_bz #(
                 .STRESS_BOUND (STRESS_BOUND),
                 .ROM_DIR      (ROM_DIR),
                 .ROM_NAME     (ROM_NAME),
-                .TAXEL_NAME   ((ROM_NAME == "") ? "" : {ROM_NAME, "_sample", DIGIT})
+                .TAXEL_NAME   ((ROM_NAME == "") ? "" : {ROM_NAME, "_sample", DIGITS[8*sample +: 8]})
             ) samples (
                 .clock          (clock),
                 .reset          (reset),

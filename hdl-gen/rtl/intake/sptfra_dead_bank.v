@@ -141,16 +141,17 @@ module sptfra_dead_bank #(
         end
     end
 
+    localparam [63:0] DIGITS = "76543210"; // 0 in the lowest bits
+
     generate
         for (index = 0; index < REPLACEABLE; index = index + 1) begin : gen_places
             localparam [31:0] PLACE = index;
-            localparam [7:0] DIGIT = 8'd48 + PLACE[7:0];
 
             sptfra_bank #(
                 .WIDTH         (18),
                 .ADDRESS_WIDTH (TAXEL_WIDTH + 1),
                 .ROM_DIR       (ROM_DIR),
-                .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_weights", DIGIT, ".mem"})
+                .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_weights", DIGITS[8*index +: 8], ".mem"})
             ) of_place (
                 .clock        (clock),
                 .write_enable (copy_writes || (writes && of_weight && (slot == PLACE[2:0]))),

@@ -50,6 +50,9 @@ module sptfra_spmv_array #(
     // Prefix of the ROM file names, for instance a directory with its slash, and what they begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
+    // Characters of each lane's number in its files' names, lane 0 in the lowest bits
+    parameter NUMBER_BITS = 16,
+    parameter [NUMBER_BITS*LANES-1:0] LANE_NUMBERS = {(NUMBER_BITS*LANES){1'b0}},
     // Derived
     parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
     parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1
@@ -92,7 +95,6 @@ module sptfra_spmv_array #(
     endgenerate
     localparam WORD_WIDTH = (WORD_DEPTH > 2) ? $clog2(WORD_DEPTH) : 1;
     localparam VISIT_WIDTH = (VISIT_DEPTH > 2) ? $clog2(VISIT_DEPTH) : 1;
-    localparam NAME_BITS = (LANES > 100) ? 24 : 16; // of a lane's number in its files' names
 
     // ---- From the sequencer; one register on the way to the lanes
     wire next_restart;
@@ -204,8 +206,7 @@ module sptfra_spmv_array #(
     genvar index;
     generate
         for (index = 0; index < LANES; index = index + 1) begin : gen_lanes
-            // The lane's number as three characters
-            localparam [23:0] DIGITS = 24'h303030 + 65536 * (index / 100) + 256 * ((index / 10) % 10) + index % 10;
+            localparam [NUMBER_BITS-1:0] NUMBER = LANE_NUMBERS[NUMBER_BITS*index +: NUMBER_BITS];
             localparam [7:0] NEXT = (index + 1) % LANES;
 
             sptfra_spmv_lane #(
@@ -220,9 +221,9 @@ module sptfra_spmv_array #(
                 .MIRROR_SIDE      (MIRROR_SIDE),
                 .FRICTION         (FRICTIONS != {PRODUCTS{1'b0}}),
                 .ROM_DIR          (ROM_DIR),
-                .VALUES_FILE      ((ROM_NAME == "") ? "" : {ROM_NAME, "_values_lane", DIGITS[NAME_BITS-1:0], ".mem"}),
-                .COLUMNS_FILE     ((ROM_NAME == "") ? "" : {ROM_NAME, "_columns_lane", DIGITS[NAME_BITS-1:0], ".mem"}),
-                .MACS_FILE        ((ROM_NAME == "") ? "" : {ROM_NAME, "_macs_lane", DIGITS[NAME_BITS-1:0], ".mem"})
+                .VALUES_FILE      ((ROM_NAME == "") ? "" : {ROM_NAME, "_values_lane", NUMBER, ".mem"}),
+                .COLUMNS_FILE     ((ROM_NAME == "") ? "" : {ROM_NAME, "_columns_lane", NUMBER, ".mem"}),
+                .MACS_FILE        ((ROM_NAME == "") ? "" : {ROM_NAME, "_macs_lane", NUMBER, ".mem"})
             ) lane (
                 .clock           (clock),
                 .reset           (reset),

@@ -19,6 +19,13 @@ pub fn column_bits(plan: &Plan) -> u32 {
     address_bits(vectors(plan) * plan.elements())
 }
 
+/// The lanes' numbers in the names of their ROM files: all have as many digits, two or three.
+pub fn lane_numbers(plan: &Plan) -> Vec<String> {
+    let lanes = plan.walkers();
+    let digits = if lanes > 100 { 3 } else { 2 };
+    (0..lanes).map(|lane| format!("{lane:0digits$}")).collect()
+}
+
 /// The instance's parameters: sizes, then the products and programs as tables.
 pub fn parameters(plan: &Plan) -> Parameters {
     let (hardware, schedule) = (&plan.design.hardware, &plan.schedule);
@@ -41,6 +48,8 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .table("SHIFTS", 6, shifts(plan))
         .outer("ROM_DIR")
         .text("ROM_NAME", &plan.design.name)
+        .count("NUMBER_BITS", 8 * lane_numbers(plan)[0].len())
+        .texts("LANE_NUMBERS", lane_numbers(plan))
 }
 
 /// A multiplier a lane, or two; the lanes' programs and operands.

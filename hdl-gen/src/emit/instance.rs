@@ -32,6 +32,10 @@ fn expression(name: &str, value: &Value) -> String {
         Value::Table { bits, entries } => table(*bits, entries),
         Value::Numbers { bits, numbers } => lines_of_numbers(*bits, numbers),
         Value::Text(text) => format!("\"{text}\""),
+        Value::Texts(texts) => {
+            let texts: Vec<String> = texts.iter().rev().map(|text| format!("\"{text}\"")).collect();
+            format!("{{{}}}", texts.join(", "))
+        }
         Value::Outer => name.to_owned(),
     }
 }

@@ -130,9 +130,3 @@ pub fn resolved_hash(design: &Design) -> String {
     let files = design.files().into_iter().map(|(_, content)| content);
     design_hash(&files.fold(design.to_toml(), |text, content| text + &content))
 }
-
-/// Name of a ROM file of one lane of so many: all have as many digits, two or three.
-fn lane_file(name: &str, contents: &str, lane: usize, lanes: usize) -> String {
-    let digits = if lanes > 100 { 3 } else { 2 };
-    format!("rom/{name}_{contents}_lane{lane:0digits$}.mem")
-}

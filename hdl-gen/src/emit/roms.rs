@@ -1,6 +1,6 @@
 //! ROM initialisation files: hexadecimal words, one a line, for `$readmemh` and Vivado's `read_mem`.
 
-use crate::blocks::array::column_bits;
+use crate::blocks::array::{column_bits, lane_numbers};
 use crate::blocks::{bz, row_width};
 use crate::cores::LONG_BITS;
 use crate::estimators::WEIGHT_BITS;
@@ -14,7 +14,7 @@ use crate::plan::vector_formats::ARM_BITS;
 
 use crate::plan::memory::{BANK, banks};
 
-use super::{FileMap, lane_file};
+use super::FileMap;
 
 /// Adds every ROM file of the plan. All lanes' files have the same number of words; shorter ones end in zeros.
 pub fn insert(plan: &Plan, files: &mut FileMap) {
@@ -22,17 +22,17 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
     let coefficient_bits = plan.design.hardware.coefficient_bits;
     let column_bits = column_bits(plan);
     let schedule = &plan.schedule;
-    let lanes = schedule.lanes.len();
-    for (lane, program) in schedule.lanes.iter().enumerate() {
+    for (program, lane) in schedule.lanes.iter().zip(lane_numbers(plan)) {
+        let file = |contents: &str| format!("rom/{name}_{contents}_lane{lane}.mem");
         let depth = schedule.word_depth();
         let word = |ways: &[i32]| joined(&ways[..plan.ways()], coefficient_bits);
         let values = program.words.iter().map(|(_, ways)| word(ways));
         let bits = coefficient_bits * plan.ways() as u32;
-        insert_rom(files, lane_file(name, "values", lane, lanes), hex(values, depth, bits));
+        insert_rom(files, file("values"), hex(values, depth, bits));
         let columns = program.words.iter().map(|&(column, _)| u128::from(column));
-        insert_rom(files, lane_file(name, "columns", lane, lanes), hex(columns, depth, column_bits));
+        insert_rom(files, file("columns"), hex(columns, depth, column_bits));
         let segments = program.segments.iter().map(|segment| u128::from((segment.kind as u32) << 14 | segment.macs));
-        insert_rom(files, lane_file(name, "macs", lane, lanes), hex(segments, schedule.segment_depth(), 16));
+        insert_rom(files, file("macs"), hex(segments, schedule.segment_depth(), 16));
     }
     let visits = (0..schedule.visits.len()).map(|index| visit(plan, index));
     insert_rom(files, format!("rom/{name}_visits.mem"), hex(visits, schedule.visits.len(), visit_bits(plan)));

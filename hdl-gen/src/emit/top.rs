@@ -247,7 +247,7 @@ pub(super) fn render(plan: &Plan, debug: bool) -> Result<(String, String), EmitE
     Ok((view.core_module, text))
 }
 
-/// Modules of the library that stand only in a `generate if` that the design does not take.
+/// Modules of the library that stand only in a `generate if` that neither the design takes nor the default parameters.
 pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     let mut without = plan.estimator.slot().without();
     if plan.thresholds.error.is_none() {
@@ -260,10 +260,9 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     if !curve {
         without.push("sptfra_curve");
     }
-    without.push(match plan.streams().sample {
-        Samples::Float32 => "sptfra_int_to_fixed",
-        Samples::Int16 | Samples::Uint16 => "sptfra_float_to_fixed",
-    });
+    if plan.streams().sample == Samples::Float32 {
+        without.push("sptfra_int_to_fixed");
+    }
     if plan.calibration.is_none() {
         without.extend(["sptfra_banks", "sptfra_curve_bank", "sptfra_tare"]);
     } else if !curve {
@@ -288,8 +287,6 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     }
     if plan.ways() > 1 {
         without.push("sptfra_coefficients");
-    } else {
-        without.extend(["sptfra_butterfly", "sptfra_taxel_walk"]);
     }
     if plan.products.iter().all(|product| product.mirrored.is_none()) {
         without.push("sptfra_diagonal_mirror");

@@ -17,7 +17,7 @@ const SHAPES: [(usize, u32); 3] = [(12_015, 11), (4_935, 18), (BANK + 300, 36)];
 /// The two modules and the banks' files, with words drawn at random; the words.
 fn folder(depth: usize, width: u32) -> (TempDir, Vec<u128>) {
     let folder = tempfile::tempdir().expect("a folder");
-    for module in ["sptfra_rom", "sptfra_rom_bank"] {
+    for module in ["sptfra_rom", "sptfra_ram"] {
         let name = format!("{module}.v");
         fs::copy(library_file(module), folder.path().join(&name)).expect("a module");
     }
@@ -41,7 +41,7 @@ fn yosys_finds_the_predicted_block_memories() {
     for (depth, width) in SHAPES {
         let (folder, _) = folder(depth, width);
         let script = format!(
-            "read_verilog -defer sptfra_rom.v sptfra_rom_bank.v; chparam -set DEPTH {depth} -set WIDTH {width} \
+            "read_verilog -defer sptfra_rom.v sptfra_ram.v; chparam -set DEPTH {depth} -set WIDTH {width} \
              -set ADDRESS_WIDTH {} -set FILE \"deep.mem\" sptfra_rom; \
              synth_xilinx -family xcup -noiopad -noclkbuf -flatten -top sptfra_rom; tee -o stat.json stat -json",
             address_width(depth)
@@ -81,7 +81,7 @@ fn every_word_of_every_bank_is_read() {
     .expect("a string");
     fs::write(folder.path().join("bench.v"), bench).expect("writable");
     let mut compiler = tools::icarus().expect("installed");
-    compiler.args(["-g2005", "-o", "bench", "-s", "bench", "bench.v", "sptfra_rom.v", "sptfra_rom_bank.v"]);
+    compiler.args(["-g2005", "-o", "bench", "-s", "bench", "bench.v", "sptfra_rom.v", "sptfra_ram.v"]);
     let compiled = compiler.current_dir(&folder).output().expect("starts");
     assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
     let ran = tools::icarus_runtime().expect("installed").args(["-n", "bench"]).current_dir(&folder).output();

@@ -34,7 +34,6 @@ rtl/sptfra_ram.v
 rtl/sptfra_ratio.v
 rtl/sptfra_reset.v
 rtl/sptfra_rom.v
-rtl/sptfra_rom_bank.v
 rtl/sptfra_row_sequencer.v
 rtl/sptfra_samples.v
 rtl/sptfra_search.v

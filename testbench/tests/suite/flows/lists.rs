@@ -33,13 +33,12 @@ fn icarus_reads_the_file_list() {
     assert_eq!((ran.stdout, ran.stderr), (String::new(), String::new()));
 }
 
-/// In the folder of the ROM files, whose bare names are then right.
 #[test]
 fn yosys_reads_the_file_list() {
     let folder = Folder::small();
-    let script = format!("read_verilog_file_list -F ../{NAME}.f; hierarchy -check -top {NAME}; proc; check -assert");
+    let script = format!("read_verilog_file_list -F {NAME}.f; hierarchy -check -top {NAME}; proc; check -assert");
     let mut yosys = tools::yosys().expect("make tools was run");
-    run(yosys.args(["-q", "-p", &script]).current_dir(folder.design().join("rom"))).succeeded();
+    run(yosys.args(["-q", "-p", &script]).current_dir(folder.design())).succeeded();
 }
 
 #[test]

@@ -46,11 +46,14 @@ impl Proof {
     /// The design's Verilog, broken if asked, and the harness, as SMT-LIB in a folder.
     fn translate(&self, files: &FileMap, broken: Option<&Broken>) -> TempDir {
         let folder = tempfile::tempdir().expect("a folder");
+        for part in ["rtl", "rom"] {
+            fs::create_dir(folder.path().join(part)).expect("writable");
+        }
         let mut read = vec!["read_verilog -formal -defer".to_owned()];
         for (path, contents) in files {
             // Modules of arithmetic read theirs before they are set free.
-            if let Some(name) = path.strip_prefix("rom/") {
-                fs::write(folder.path().join(name), contents).expect("writable");
+            if path.starts_with("rom/") {
+                fs::write(folder.path().join(path), contents).expect("writable");
             }
             let Some(module) = path.strip_prefix("rtl/").and_then(|name| name.strip_suffix(".v")) else { continue };
             if self.models.iter().any(|&(replaced, _)| replaced == module) {
@@ -61,8 +64,8 @@ impl Proof {
             for (_, from, to) in changes.filter(|(place, ..)| module == *place || module == format!("sptfra_{place}")) {
                 text = replaced(module, &text, from, to);
             }
-            fs::write(folder.path().join(format!("{module}.v")), text).expect("writable");
-            read.push(format!("{module}.v"));
+            fs::write(folder.path().join(path), text).expect("writable");
+            read.push(path.clone());
         }
         for file in self.models.iter().map(|&(_, model)| model).chain([self.harness]) {
             let name = format!("{file}.sv");

@@ -180,6 +180,19 @@ fn yosys_elaborates_default_parameters() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
+/// Read without -defer, from a folder that is not that of the ROM files: the folder has every module that default
+/// parameters ask for.
+#[test]
+fn yosys_reads_a_folder_without_options() {
+    assert_silent(in_parallel(&some_of(all()), |written| {
+        let mut yosys = tools::yosys().expect("installed");
+        yosys.args(["-q", "-p", "read_verilog ../rtl/*.v; hierarchy -check"]);
+        yosys.current_dir(written.folder.path().join("mcsr"));
+        let output = yosys.output().expect("runs");
+        vec![if output.status.success() { String::new() } else { String::from_utf8_lossy(&output.stderr).into_owned() }]
+    }));
+}
+
 /// Rules of Verible that are not for this Verilog, each with its reason.
 const WAIVED: [(&str, &str); 8] = [
     ("explicit-parameter-storage-type", "SystemVerilog: Verilog-2005 has no type of a parameter that is a string"),

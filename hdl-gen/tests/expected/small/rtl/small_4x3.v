@@ -25,7 +25,12 @@
 
 module small_4x3 #(
     // Prefix of the ROM file names, for instance a directory with its slash; empty: the working directory
+`ifdef YOSYS
+    // From the folder of this file
+    parameter ROM_DIR = "../rom/"
+`else
     parameter ROM_DIR = ""
+`endif
 ) (
     (* X_INTERFACE_INFO = "xilinx.com:signal:clock:1.0 aclk CLK",
         X_INTERFACE_PARAMETER = "ASSOCIATED_BUSIF s_axis:m_axis, ASSOCIATED_RESET aresetn" *)
@@ -336,7 +341,9 @@ module small_4x3 #(
             6'd17 // 0: |w|
         }),
         .ROM_DIR          (ROM_DIR),
-        .ROM_NAME         ("small_4x3")
+        .ROM_NAME         ("small_4x3"),
+        .NUMBER_BITS      (16),
+        .LANE_NUMBERS     ({"00"})
     ) spmv_array (
         .clock         (aclk),
         .reset         (reset),

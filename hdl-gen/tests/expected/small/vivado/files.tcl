@@ -49,7 +49,6 @@ foreach file {
     sptfra_ratio.v
     sptfra_reset.v
     sptfra_rom.v
-    sptfra_rom_bank.v
     sptfra_row_sequencer.v
     sptfra_samples.v
     sptfra_search.v
