@@ -31,7 +31,6 @@ module sptfra_registers #(
     parameter [0:0] IS_REDUCED = 1'd1,
     // Frames hold counts, else pascals
     parameter [0:0] HAS_COUNTS = 1'd0,
-    // Cycles depend on the data
     // Bytes of a beat on either stream
     parameter [7:0] STREAM_BYTES = 8'd4,
     // A sample is: 0 float32, 1 int16, 2 uint16
