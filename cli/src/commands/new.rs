@@ -4,7 +4,7 @@ use std::error::Error;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Estimator, Tension, design_schema};
+use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Estimator, MAX_NOISE, Tension, design_schema};
 use golden::kernel::Kernel;
 use hdl_gen::new_design::{COUNT_BITS, NewDesign};
 
@@ -87,7 +87,7 @@ fn share(text: &str) -> Result<f64, String> {
     let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |percent| (percent, 100.0));
     let share = number.trim().parse().ok().map(|number: f64| number / unit);
     share
-        .filter(|share| (0.0..=0.1).contains(share))
+        .filter(|share| (0.0..=MAX_NOISE).contains(share))
         .ok_or_else(|| "a share from 0 to 0.1, such as 1% or 0.01".to_owned())
 }
 

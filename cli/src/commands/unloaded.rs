@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use golden::check::{Beyond, beyond};
-use golden::design::{Design, Expected};
+use golden::design::{Design, Expected, MAX_NOISE};
 use golden::output::write_whole;
 use golden::resolved::{folder, keep_apart};
 use golden::rest::AtRest;
@@ -124,10 +124,11 @@ pub fn run(
 /// The noise as a share of what typical contacts read.
 fn share(design: &Design, rest: &AtRest, loaded: &[Vec<f64>]) -> Result<f64, String> {
     let share = rest.noise_of(design, loaded).ok_or("--loaded: no frame has load above the noise; record contacts")?;
-    if share > 0.1 {
+    if share > MAX_NOISE {
         return Err(format!(
-            "--loaded: the noise is {:.0} % of a typical contact's largest reading, above the 10 % of sensor.noise; press harder",
-            100.0 * share
+            "--loaded: the noise is {:.0} % of a typical contact's largest reading, above the {} % of sensor.noise; press harder",
+            100.0 * share,
+            100.0 * MAX_NOISE
         ));
     }
     Ok(share)

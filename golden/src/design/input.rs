@@ -16,6 +16,8 @@ use crate::words::print_as_words;
 
 /// Standard deviation of a reading's noise where a design names none, as a share of the frame's largest reading.
 pub const DEFAULT_NOISE: f64 = 0.005;
+/// The largest, beyond which a frame tells nothing of shear.
+pub const MAX_NOISE: f64 = 0.1;
 
 /// From the values of a frame to stress: `Pa = (gain_i * count + offset_i) * pa_per_count`, or, with a curve,
 /// `Pa = gain_i * curve(count) + offset_i`.
@@ -169,6 +171,7 @@ impl Input {
         dead.extend(gains.filter(|&(_, &gain)| gain == 0.0).map(|(taxel, _)| taxel));
         dead.sort_unstable();
         dead.dedup();
+        let noise = noise.share();
         Ok(Self { pa_per_count, curve, calibration, dead, room, tension, noise, crosstalk, smoothing })
     }
 }

@@ -8,7 +8,9 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{DEFAULT_NOISE, ExpectedError, FilterKind, Hardware, MAX_SIDE, Outputs, PlanKind, Regularisation, Slip};
+use super::{
+    DEFAULT_NOISE, ExpectedError, FilterKind, Hardware, MAX_NOISE, MAX_SIDE, Outputs, PlanKind, Regularisation, Slip,
+};
 use super::{Tension, TrainingSet};
 use crate::bodies;
 use crate::estimators::{Estimator, StandardError};
@@ -58,9 +60,8 @@ pub(super) struct SensorKeys {
     pub tension: Tension,
     /// Standard deviation of a reading's noise, as a share of the frame's largest reading. `sptfra calibrate` trains at this
     /// noise and below.
-    #[serde(default = "noise")]
-    #[schemars(range(min = 0.0, max = 0.1))]
-    pub noise: f64,
+    #[serde(default)]
+    pub noise: NoiseKey,
     /// Crosstalk of a row-column array: each taxel reads its stress plus this share of the sum of its row and of its column, the
     /// taxel among them. The solver removes it exactly, in pascals, after gains and dead taxels.
     #[schemars(range(min = 0.0001, max = 0.1), extend("examples" = [0.02]))]
@@ -85,8 +86,42 @@ pub(super) struct SensorKeys {
     pub dead: Option<DeadKey>,
 }
 
-fn noise() -> f64 {
-    DEFAULT_NOISE
+/// Key `noise`.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(
+    untagged,
+    deny_unknown_fields,
+    expecting = "sensor.noise is a share of the frame's largest reading, noise = 0.01, or a standard deviation and what \
+                 contacts read at most, both in the units of frames, noise = { deviation = 12.0, largest = 4000.0 }"
+)]
+pub(super) enum NoiseKey {
+    /// A share of the frame's largest reading.
+    Share(#[schemars(range(min = 0.0, max = MAX_NOISE))] f64),
+    /// Pascals or counts, as the frames are.
+    Measured {
+        /// Standard deviation of a reading, as `sptfra check --unloaded` measures it.
+        #[schemars(range(min = 0.0))]
+        deviation: f64,
+        /// The largest reading of a typical contact, without the offset.
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        largest: f64,
+    },
+}
+
+impl NoiseKey {
+    /// The share of the frame's largest reading.
+    pub(super) fn share(self) -> f64 {
+        match self {
+            Self::Share(share) => share,
+            Self::Measured { deviation, largest } => deviation / largest,
+        }
+    }
+}
+
+impl Default for NoiseKey {
+    fn default() -> Self {
+        Self::Share(DEFAULT_NOISE)
+    }
 }
 
 /// Key `curve`.

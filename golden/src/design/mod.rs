@@ -48,7 +48,7 @@ pub use filter::{Choices, Filter, FilterKind, MatrixFilter, UnknownMatrixFilter}
 pub use hardware::{
     CalibrationIn, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise, Overrun, STREAM_BITS, Samples, Scaling,
 };
-pub use input::{DEFAULT_NOISE, Input, Tension};
+pub use input::{DEFAULT_NOISE, Input, MAX_NOISE, Tension};
 pub use joint::conditions;
 pub use read::syntax_position;
 pub use regularisation::Regularisation;

@@ -2,7 +2,7 @@
 
 use super::checks::{self, Check};
 use super::files::Beside;
-use super::keys::{AlgorithmKeys, CurveKey, DeadKey, DesignKeys, FORMAT, SensorKeys, SlipKeys};
+use super::keys::{AlgorithmKeys, CurveKey, DeadKey, DesignKeys, FORMAT, NoiseKey, SensorKeys, SlipKeys};
 use super::{
     Algorithm, DEFAULT_MAX_STANDARD_ERROR, Design, DesignError, Estimator, FileNames, Input, JointConstants, Kernel,
     NOISE_FLOOR_DIVISOR, Regularisation, Sensor, Slip, Tension, filter_keys, joint, rules,
@@ -19,7 +19,8 @@ pub(super) fn design(keys: DesignKeys, origin: &str, beside: Beside<'_>) -> Resu
     let SensorKeys { columns, rows, pitch_mm, depth_mm, .. } = keys;
     let sensor = Sensor { columns, rows, pitch_mm, depth_mm };
     let correction = algorithm.correction.clone();
-    let algorithm = self::algorithm(&check, algorithm, (&sensor, keys.tension, keys.noise), hardware.full_scale_pa)?;
+    let algorithm =
+        self::algorithm(&check, algorithm, (&sensor, keys.tension, keys.noise.share()), hardware.full_scale_pa)?;
     rules::tables(&check, &sensor, &algorithm, &hardware)?;
     // Last, so that what is wrong with the design itself is said before its files are read.
     let input = Input::new(&check, keys, beside, sensor.taxels(), &hardware)?;
@@ -137,7 +138,7 @@ pub(super) fn keys(design: &Design, names: &FileNames) -> DesignKeys {
             pitch_mm,
             depth_mm,
             tension: input.tension,
-            noise: input.noise,
+            noise: NoiseKey::Share(input.noise),
             crosstalk: Some(input.crosstalk).filter(|&share| share > 0.0),
             smoothing: Some(input.smoothing).filter(|&k| k > 0),
             pa_per_count: input.pa_per_count,

@@ -3,7 +3,7 @@
 use super::checks::Check;
 use super::hardware::{CalibrationIn, Hardware, MAX_LANES, Optimise, Samples};
 use super::keys::SensorKeys;
-use super::{Algorithm, Design, DesignError, Estimator, Filter, MAX_SIDE_PAPER, Outputs, PlanKind, Sensor};
+use super::{Algorithm, Design, DesignError, Estimator, Filter, MAX_NOISE, MAX_SIDE_PAPER, Outputs, PlanKind, Sensor};
 use crate::dead_taxels::MOST_DEAD;
 
 /// Lanes of the reduced plan come in fours, one for each parity.
@@ -136,6 +136,12 @@ pub(super) fn input(check: &Check, design: &Design) -> Result<(), DesignError> {
                 format!(
                     "at most {most} of this sensor's can be replaced: mend the sensor, or leave out the part of it"
                 ),
+            ),
+            (
+                input.noise > MAX_NOISE,
+                "sensor.noise",
+                format!("is {} % of the largest reading", 100.0 * input.noise),
+                format!("shear needs less than {} %: press harder, or average frames", 100.0 * MAX_NOISE),
             ),
             (
                 input.smoothing > 0 && input.noise <= 0.0,

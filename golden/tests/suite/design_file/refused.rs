@@ -56,6 +56,12 @@ fn crosstalk_and_smoothing_in_their_ranges() {
     let sensor = |keys: &str| with("depth_mm = 3.0", &format!("depth_mm = 3.0\n{keys}"));
     refused(&sensor("crosstalk = 0.2"), &["sensor.crosstalk", "is 0.2", "0.0001 to 0.1"]);
     refused(&sensor("smoothing = 9"), &["sensor.smoothing", "is 9", "1 to 8"]);
+    refused(&sensor("noise = 0.2"), &["sensor.noise"]);
+    refused(&sensor("noise = { deviation = 500.0, largest = 4000.0 }"), &["sensor.noise", "12.5 %", "press harder"]);
+    refused(&sensor("noise = { deviation = 12.0, largest = 0.0 }"), &["sensor.noise.largest"]);
+    refused(&sensor("noise = { deviation = 12.0 }"), &["sensor.noise", "largest"]);
+    let noise = |keys: &str| Design::from_toml(&sensor(keys), "pad.toml").unwrap().input.noise.to_bits();
+    assert_eq!(noise("noise = { deviation = 12.0, largest = 4000.0 }"), noise("noise = 0.003"));
     refused(&sensor("smoothing = 4\nnoise = 0"), &["sensor.smoothing", "sensor.noise is 0", "check --unloaded"]);
     let design = Design::from_toml(&sensor("crosstalk = 0.02\nsmoothing = 4"), "pad.toml").unwrap();
     assert_eq!(Design::from_toml(&design.to_toml(), "resolved").unwrap(), design);
