@@ -21,6 +21,8 @@ const MEDIAN: f64 = 0.83;
 const FRICTION: f64 = 0.5;
 /// A contact each, which no calibration draws.
 const SEEDS: Range<u64> = 90_000..90_200;
+/// Draws of the noise of each contact: the 95 % of one draw differ by a tenth from those of another.
+const DRAWS: usize = 5;
 
 /// Noises of the table of smoothing.
 const SMOOTHED_PERCENT: [f64; 3] = [0.5, 1.0, 2.0];
@@ -57,7 +59,7 @@ fn errors(design: &Design, frames: &[SceneFrame], percent: f64) -> Result<Quanti
     let solver = Solver::new(design)?;
     let mut random = ChaCha8Rng::seed_from_u64(SEEDS.start);
     let mut errors = Vec::new();
-    for frame in frames {
+    for frame in frames.iter().flat_map(|frame| std::iter::repeat_n(frame, DRAWS)) {
         let found = solver.solve(&noisy(design, &frame.stress, percent, &mut random))?.resultant;
         let [x, y] = [0, 1].map(|axis| found[axis] - frame.force[axis]);
         errors.push(100.0 * x.hypot(y) / frame.force[2].abs());
@@ -154,7 +156,7 @@ pub fn csv(designs: &[(String, Design)]) -> Result<String, NoiseError> {
         designs.iter().map(|(name, design)| format!("{name} {}", resolved_hash(design))).collect();
     let mut text = format!(
         "# Error of the tangential force against noise, in percent of the normal force, by the f64 solver.\n\
-         # {} round sliding contacts at a friction of {FRICTION}, none of them drawn by a calibration.\n\
+         # {} round sliding contacts at a friction of {FRICTION} with {DRAWS} draws of noise each, no contact drawn by a calibration.\n\
          # noise: standard deviation in percent of the largest reading of a frame.\n\
          # command: cargo xtask noise DESIGNS --out results/noise.csv\n\
          # designs: {}\n\
