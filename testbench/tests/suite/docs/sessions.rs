@@ -14,7 +14,7 @@ use crate::support::designs::design_file;
 use crate::support::workspace;
 
 /// What is not run here, by how the line begins, and why.
-const ELSEWHERE: [(&str, &str); 29] = [
+const ELSEWHERE: [(&str, &str); 30] = [
     ("make ", "installs tools, builds all, or takes minutes; the targets are looked up"),
     ("cargo ", "builds all, or runs tests of minutes; topics are looked up"),
     ("export ", "of the shell that the next lines are typed into"),
@@ -35,6 +35,7 @@ const ELSEWHERE: [(&str, &str); 29] = [
     ("echo", "for bootgen, which is not there"),
     ("fusesoc", "topic flows"),
     ("verilator", "topic lint"),
+    ("yosys", "topic lint"),
     ("cd rtl-out/NAME", "topic lint"),
     ("python3 rtl-out/NAME", "topic flows"),
     ("sptfra generate designs/small-control.toml", "docs/how-to/board.md: topic drivers"),
