@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT OR Apache-2.0
 # Synthesises a design with Yosys for UltraScale+ and prints its cells by block beside the generator's prediction.
-# The levels of logic of a block's longest way may not be more than xtask/levels.toml has; RECORD=1 writes them there.
+# The levels of logic of a block's longest way may not be more than xtask/levels.toml has; RECORD=1 writes them there. With COUNT_ONLY=1 levels do not matter.
 # Usage: tools/synth.sh DESIGN.toml    (make tools and make build first; PROFILE=release for the release build)
 set -eu
 cd "$(dirname "$0")/.."
@@ -31,5 +31,6 @@ cells() {
     "$bin/xtask" cells "$design" "$work" "$name.stat.json" --netlist "$name.netlist.json" "$@"
 }
 cells --json > "$name.cells.json"
+[ -z "${COUNT_ONLY:-}" ] || exit 0
 cells --levels "$record" ${RECORD:+--record}
 echo "LUT and FF are too high: for this family Yosys packs no register into a DSP or a block RAM output."

@@ -12,6 +12,7 @@ use hdl_gen::inspection::{contacts, doubled, excess, figures, narrow, shares};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::energy::Energy;
 use hdl_gen::plan::format::short;
+use hdl_gen::plan::luts::{LOGIC_ERROR_PERCENT, Logic, logic};
 use hdl_gen::plan::savings::savings;
 
 use crate::arguments::{Target, design_file};
@@ -214,6 +215,12 @@ fn resources(out: &mut String, plan: &Plan) -> std::fmt::Result {
         Some([dsp, bram36]) => writeln!(out, ": {dsp:.1} and {bram36:.1} % of {part}")?,
         None => writeln!(out)?,
     }
+    let Logic { lut, ff } = logic(plan);
+    let percent = LOGIC_ERROR_PERCENT;
+    writeln!(
+        out,
+        "  about {lut} LUT and {ff} FF: a fit to Yosys' counts, whose error is {percent} % in 95 of 100 designs"
+    )?;
     for told in [excess(plan), doubled(plan)].into_iter().flatten() {
         writeln!(out, "  {told}")?;
     }

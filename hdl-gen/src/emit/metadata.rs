@@ -4,6 +4,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use crate::plan::energy::Energy;
+use crate::plan::luts::{Logic, logic};
 use crate::plan::product::{Product, Vector};
 use crate::plan::schedule::Window;
 use crate::plan::streams::WORD_BITS;
@@ -14,6 +15,7 @@ use super::{EmitError, FileMap, VERSION, registers};
 
 /// The predicted figures, under the names that `sptfra inspect --json` uses too.
 pub fn predicted(plan: &Plan) -> Value {
+    let Logic { lut, ff } = logic(plan);
     json!({
         "latency_cycles": plan.timeline.latency_cycles,
         "interval_cycles": plan.timeline.interval_cycles,
@@ -23,6 +25,8 @@ pub fn predicted(plan: &Plan) -> Value {
         "dsp": plan.resources.dsp,
         "bram36": plan.resources.bram36,
         "rom_bits": plan.resources.rom_bits,
+        "lut": lut,
+        "ff": ff,
         "blocks": plan.resources.blocks,
         "energy_estimate": Energy::of(plan),
     })

@@ -5,6 +5,7 @@ use serde::Serialize;
 use tera::{Context, Tera};
 
 use crate::plan::Plan;
+use crate::plan::luts::{LOGIC_ERROR_PERCENT, Logic, logic};
 use crate::plan::words::{SUMMARY, SUMMARY_WORDS, Word, status_bits};
 
 use super::flows::vlnv;
@@ -34,6 +35,9 @@ struct View {
     dsp_block: &'static str,
     dsp: usize,
     bram36: f64,
+    lut: u64,
+    ff: u64,
+    lut_error: u64,
     stream_bits: usize,
     beats_in: usize,
     beats_out: usize,
@@ -58,6 +62,7 @@ impl View {
         let unit = if design.input.counts() { "counts" } else { "pascals, compression negative," };
         let kind = if streams.sample == Samples::Float32 { "float32".to_owned() } else { streams.sample.to_string() };
         let [vendor, library, _] = vlnv(design);
+        let Logic { lut, ff } = logic(plan);
         Self {
             name: design.name.clone(),
             version: VERSION,
@@ -76,6 +81,9 @@ impl View {
             dsp_block: plan.resources.dsp_block.name(),
             dsp: plan.resources.dsp,
             bram36: plan.resources.bram36,
+            lut,
+            ff,
+            lut_error: LOGIC_ERROR_PERCENT,
             stream_bits: streams.bits,
             beats_in: streams.beats_in(),
             beats_out: streams.beats_out(),
