@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT OR Apache-2.0
 # Synthesises a design with Yosys for UltraScale+ and prints its cells by block beside the generator's prediction.
-# The levels of logic of a block's longest way may not be more than xtask/levels.toml has; RECORD=1 writes them there. With COUNT_ONLY=1 levels do not matter.
+# The levels of logic of a block's longest way may not be more than xtask/levels.toml has; RECORD=1 writes them there.
+# With COUNT_ONLY=1 nothing but the cells is asked.
 # Usage: tools/synth.sh DESIGN.toml    (make tools and make build first; PROFILE=release for the release build)
 set -eu
 cd "$(dirname "$0")/.."
