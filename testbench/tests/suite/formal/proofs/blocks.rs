@@ -200,7 +200,7 @@ pub const PROOFS: &[Proof] = &[
         induction: "3",
         altered: &[],
         broken: &[
-            ("replace", "if (in_takes || replays) begin", "if (in_takes || in_ends || replays) begin"),
+            ("replace", "if (in_takes || replays) begin", "if (in_takes || settles[2] || replays) begin"),
             ("replace", "if (settles[2]) begin", "if (settles[1]) begin"),
             ("replace", "if (in_ends || replays_last) begin", "if (replays_last) begin"),
             ("replace", "if (out_valid && out_last) begin", "if (out_last) begin"),
