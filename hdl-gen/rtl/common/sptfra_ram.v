@@ -2,7 +2,7 @@
 // Part of the SpTFRA hardware generator.
 //
 // Memory with one write port and one read port, both synchronous, filled from FILE by $readmemh when the device is
-// configured; undefined without a FILE. A ROM is one whose write port is tied off.
+// configured; undefined without a FILE. A ROM is one that is not WRITABLE.
 //
 // Latency: 1 cycle from read_address to read_data, held while read_enable is low. A word must not be used that is read
 // in the cycle in which it is written: what a block memory answers then differs from fabric to fabric, and a tool that
@@ -20,7 +20,9 @@ module sptfra_ram #(
     // Prefix of the file name, for instance a directory with its slash
     parameter ROM_DIR = "",
     // Hexadecimal words, one a line, as many as DEPTH
-    parameter FILE = ""
+    parameter FILE = "",
+    // 0: a ROM, without a write port
+    parameter WRITABLE = 1
 ) (
     input  wire                     clock,
     input  wire                     write_enable,
@@ -39,13 +41,26 @@ module sptfra_ram #(
         end else if (FILE != "") begin : gen_contents_here
             // An empty prefix would put a null character before the name
             initial $readmemh(FILE, memory);
+        end else if (WRITABLE == 0) begin : gen_no_contents
+            // As the defaults have it: a word that nothing writes has to have a value
+            initial memory[0] = {WIDTH{1'b0}};
+        end
+    endgenerate
+
+    // A port that is tied off stays one for a tool that keeps the hierarchy, and costs a block memory for a few LUTs
+    generate
+        if (WRITABLE != 0) begin : gen_write
+            always @(posedge clock) begin
+                if (write_enable) begin
+                    memory[write_address] <= write_data;
+                end
+            end
+        end else begin : gen_no_write
+            wire _unused_write = &{1'b0, write_enable, write_address, write_data};
         end
     endgenerate
 
     always @(posedge clock) begin
-        if (write_enable) begin
-            memory[write_address] <= write_data;
-        end
         if (read_enable) begin
             read_data <= memory[read_address];
 `ifdef SIMULATION

@@ -43,7 +43,8 @@ module sptfra_rom #(
                 .DEPTH         (DEPTH),
                 .ADDRESS_WIDTH (ADDRESS_WIDTH),
                 .ROM_DIR       (ROM_DIR),
-                .FILE          (FILE)
+                .FILE          (FILE),
+                .WRITABLE      (0)
             ) whole (
                 .clock         (clock),
                 .write_enable  (1'b0),
@@ -71,7 +72,8 @@ module sptfra_rom #(
                     .DEPTH         (WORDS),
                     .ADDRESS_WIDTH (WORDS_WIDTH),
                     .ROM_DIR       (ROM_DIR),
-                    .FILE          ((FILE == "") ? "" : {"bank", TEXT, "_", FILE})
+                    .FILE          ((FILE == "") ? "" : {"bank", TEXT, "_", FILE}),
+                    .WRITABLE      (0)
                 ) of_bank (
                     .clock         (clock),
                     .write_enable  (1'b0),
