@@ -58,6 +58,17 @@ fn yosys_finds_the_predicted_block_memories() {
     }
 }
 
+/// A tool that keeps the hierarchy does not see that a port is tied off: a small ROM would be a block memory.
+#[test]
+fn a_rom_has_no_write_port() {
+    let (folder, _) = folder(300, 12);
+    let script = "read_verilog sptfra_rom.v sptfra_ram.v; hierarchy -top sptfra_rom; proc; memory_collect; \
+                  select -assert-none t:$mem_v2 r:WR_PORTS>0 %i; select -assert-min 1 t:$mem_v2";
+    let made = tools::yosys().expect("installed").args(["-q", "-p", script]).current_dir(&folder).output();
+    let made = made.expect("starts");
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+}
+
 #[test]
 fn every_word_of_every_bank_is_read() {
     let (depth, width) = SHAPES[1];

@@ -172,3 +172,21 @@ fn contacts(design: &Design, solver: &Solver) -> Vec<Vec<f64>> {
     };
     (0..FRAMES).map(|_| frame()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_have_as_many_contacts_as_the_design_separates() {
+        let place = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/sensor1-fast.toml");
+        for contacts in [1, 2] {
+            let mut design = Design::load(Path::new(place)).expect("a design");
+            design.algorithm.contacts = contacts;
+            let solver = Solver::new(&design).expect("matrices");
+            for frame in super::contacts(&design, &solver) {
+                assert_eq!(solver.solve(&frame).expect("a whole frame").bodies, contacts);
+            }
+        }
+    }
+}

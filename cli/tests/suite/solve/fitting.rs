@@ -162,6 +162,7 @@ fn calibrate_then_solve() {
     let said = String::from_utf8(calibrate(&[]).stdout).unwrap();
     assert!(algorithm.standard_error.is_some(), "every calibrated design has one");
     assert!(said.contains("gain") && said.contains("mu |mu|^2") && said.contains("weights"), "{said}");
+    assert!(said.contains("At a noise of 0.5 % expect the shear within "), "{said}");
     // Another design's weights are not written over.
     let other = resolved.with_file_name("other.toml");
     fs::rename(&weights, resolved.with_file_name("other.weights.csv")).unwrap();
