@@ -118,9 +118,9 @@ class Sptfra:
 
     def set_smoothing(self, k):
         """Averages frames with the weight 2**-k from the next frame on; 0 averages nothing. Raises RuntimeError where the
-        core averages none."""
+        core has no register for it."""
         if not self.identity.averages_frames:
-            raise RuntimeError("the core averages no frames: its design needs smoothing and control = true")
+            raise RuntimeError("the core has no register SMOOTHING: its design needs smoothing and control = true")
         if not 0 <= k <= 8:
             raise ValueError(f"k is {k}: 0 to 8")
         self._core.write(Register.SMOOTHING, k)

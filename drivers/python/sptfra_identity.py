@@ -32,7 +32,7 @@ class Identity:
     replaceable: int
     #: Whether frames that find no room are dropped, and the source never held.
     drops_frames: bool
-    #: Whether frames are averaged: see `Sptfra.set_smoothing`.
+    #: Whether a register sets the average of frames: see `Sptfra.set_smoothing`. False without registers.
     averages_frames: bool
     #: What a sample of a frame is: float32, int16 or uint16.
     samples: np.dtype

@@ -42,12 +42,12 @@ module sptfra_ram #(
             // An empty prefix would put a null character before the name
             initial $readmemh(FILE, memory);
         end else if (WRITABLE == 0) begin : gen_no_contents
-            // As the defaults have it: a word that nothing writes has to have a value
+            // Neither a file nor a port writes it, and a memory needs a value
             initial memory[0] = {WIDTH{1'b0}};
         end
     endgenerate
 
-    // A port that is tied off stays one for a tool that keeps the hierarchy, and costs a block memory for a few LUTs
+    // A tied-off port remains where a tool keeps the hierarchy: small ROMs would be block memories in place of LUTs
     generate
         if (WRITABLE != 0) begin : gen_write
             always @(posedge clock) begin

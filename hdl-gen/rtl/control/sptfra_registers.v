@@ -10,7 +10,7 @@
 
 module sptfra_registers #(
     // Version of the register map
-    parameter [7:0] MAP_VERSION = 8'd1,
+    parameter [7:0] MAP_VERSION = 8'd0,
     // Version of the generator
     parameter [7:0] MAJOR = 8'd0,
     parameter [7:0] MINOR = 8'd0,

@@ -28,9 +28,8 @@ pub fn library(multiplier: Multiplier) -> BTreeMap<&'static str, &'static str> {
     library
 }
 
-/// The modules of the library that `texts` instantiate, and those that these do, but for what stands only in a
-/// `generate if` that the design does not take, which `without` names: every tool passes over a module that is missing
-/// there.
+/// The modules of the library that `texts` instantiate, and those that these do, but for what `without` names. That
+/// stands only in a `generate if` that neither the design takes nor the default parameters, which Yosys elaborates too.
 pub fn used_by<'a>(
     texts: impl Iterator<Item = &'a str>,
     without: &[&str],

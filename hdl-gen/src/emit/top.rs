@@ -273,8 +273,6 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     }
     if plan.smoothing.is_none() {
         without.push("sptfra_smoothing");
-    } else {
-        without.push("sptfra_taxel_stream");
     }
     if !plan.scales_frames() {
         without.push("sptfra_frame_scale");

@@ -112,8 +112,7 @@ mod tests {
             }
         }
 
-        /// A constant frame is its own average, and another one close to it is reached within `10 2^k` frames and those that
-        /// the step takes to halve to one.
+        /// A constant frame is its own average. One at most 1,000 steps away is reached within `20 2^rate` frames.
         #[test]
         fn what_is_constant_is_reached(from in stress(), by in -1_000_i64..=1_000, rate in 0..=8_u32) {
             let (plan, mut average) = (plan(), Average::default());
