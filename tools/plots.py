@@ -218,7 +218,11 @@ def noise():
         for sigma in (0, 0.5, 1, 1.5, 2):
             parts.append(text(x(sigma), bottom + 18, f"{sigma:g}", "middle", size=12))
         parts.append(text(x0 + 150, bottom + 40, "noise, % of the frame's largest reading", "middle", size=12))
-        bound = {"1": 4.3, "2": 5.5}[sensor]
+        bound = next(
+            float(row["median"])
+            for row in rows("estimator-study.csv")
+            if (row["sensor"], row["kind"], row["estimator"], row["noise"]) == (sensor, "sliding", "bound", "1")
+        )
         parts.append(line(x(0), y(0), x(2), y(2 * bound), COLOURS[0], 2))
         for index in range(2):
             design = f"sensor{sensor}-{designs[index]}"

@@ -87,7 +87,7 @@ def bench(figures: dict) -> dict[str, tuple[list[str], list[list]]]:
         ["design", "filter", "macs", "latency", "interval", "ramb36", "force_percent", "friction"],
         [
             [
-                row["design"], row["filter"], row["macs"], row["latency"], row["interval"], shown(row["bram36"], 1),
+                stem(row["design"]), row["filter"], row["macs"], row["latency"], row["interval"], shown(row["bram36"], 1),
                 shown(100 * row["field_error"], 2), shown(row["friction_error"], 4),
             ]
             for row in figures["filters"]

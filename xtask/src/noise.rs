@@ -15,8 +15,6 @@ use rayon::prelude::*;
 
 /// Standard deviations of a reading in percent of the frame's largest.
 pub const NOISE_PERCENT: [f64; 5] = [0.0, 0.2, 0.5, 1.0, 2.0];
-/// Median of an efficient estimator's errors over their root mean square.
-const MEDIAN: f64 = 0.83;
 /// Friction of the contacts.
 const FRICTION: f64 = 0.5;
 /// A contact each, which no calibration draws.
@@ -115,7 +113,7 @@ pub fn smoothing_csv(designs: &[(String, Design, f64)]) -> Result<String, NoiseE
         "# Error of the tangential force against smoothing, in percent of the normal force, by the f64 solver.\n\
          # {} round sliding contacts at a friction of {FRICTION}, each averaged over {FRAMES} frames with their own noise.\n\
          # k: sensor.smoothing, 0 one frame. frames: so many equally weighted ones have the same noise.\n\
-         # noise: standard deviation in percent of the largest reading of a frame. bound: median of the best estimator.\n\
+         # noise: standard deviation in percent of the largest reading of a frame. bound: median of the best unbiased estimator.\n\
          # command: cargo xtask noise DESIGNS --smoothing --out results/smoothing.csv\n\
          # designs: {}\n\
          design,noise,k,frames,median,p95,bound\n",
@@ -135,15 +133,15 @@ pub fn smoothing_csv(designs: &[(String, Design, f64)]) -> Result<String, NoiseE
     Ok(text)
 }
 
-/// The bound of a sensor of the paper: median error of the best estimator, in percent of the normal force at a noise of 1 %.
+/// The bound of a sensor of the paper: median error of the best unbiased estimator, in percent of the normal force at a noise
+/// of 1 %.
 ///
-/// Cramér-Rao bound of round sliding contacts with unknown place, size, force and direction on a bonded layer with a Poisson's
-/// ratio of 0.49: a root mean square of 5.2 and 6.6.
+/// Cramér-Rao bound of such contacts as [`SEEDS`] draws, of unknown place, size, force and direction
+/// (`results/estimator-study.csv`).
 pub fn bound(design: &Design) -> Option<f64> {
-    let bounds = [([4.0, 2.0], 5.2), ([4.0, 4.0], 6.6)];
+    let bounds = [([4.0, 2.0], 3.66), ([4.0, 4.0], 4.50)];
     let is = |pitch_mm: [f64; 2]| pitch_mm.map(f64::to_bits) == design.sensor.pitch_mm.map(f64::to_bits);
-    let found = bounds.into_iter().find(|(pitch_mm, _)| is(*pitch_mm) && design.sensor.taxels() == 100);
-    found.map(|(_, root_mean_square)| MEDIAN * root_mean_square)
+    bounds.into_iter().find(|(pitch_mm, _)| is(*pitch_mm) && design.sensor.taxels() == 100).map(|(_, bound)| bound)
 }
 
 /// The table of some designs, which go by the names of their files.

@@ -97,7 +97,7 @@ pub(super) struct SensorKeys {
 pub(super) enum NoiseKey {
     /// A share of the frame's largest reading.
     Share(#[schemars(range(min = 0.0, max = MAX_NOISE))] f64),
-    /// Pascals or counts, as the frames are.
+    /// Pascals or counts, as the frames are. With a curve write the share that `sptfra check --unloaded --loaded` prints.
     Measured {
         /// Standard deviation of a reading, as `sptfra check --unloaded` measures it.
         #[schemars(range(min = 0.0))]

@@ -140,8 +140,8 @@ pub(super) fn input(check: &Check, design: &Design) -> Result<(), DesignError> {
             (
                 input.noise > MAX_NOISE,
                 "sensor.noise",
-                format!("is {} % of the largest reading", 100.0 * input.noise),
-                format!("shear needs less than {} %: press harder, or average frames", 100.0 * MAX_NOISE),
+                format!("is {:.1} % of the largest reading", 100.0 * input.noise),
+                format!("shear needs at most {} %: press harder, or use a quieter sensor", 100.0 * MAX_NOISE),
             ),
             (
                 input.smoothing > 0 && input.noise <= 0.0,

@@ -52,9 +52,10 @@ impl Census {
 }
 
 impl Solver {
-    /// Finds the bodies of the stress `b`, which is solved as that of one; none for a design that does not ask.
+    /// Finds the contacts in the stress `b` (Pa) as connected components of the weights `|w|` (N); none for a design that does
+    /// not ask.
     ///
-    /// They are told apart by `|w|`, as hardware counts them, so that count and records agree in every design.
+    /// The hardware counts by the same rule.
     pub(super) fn part(&self, b: &DVector<f64>, parted: &mut Parted) -> Census {
         let Some(finder) = &self.finder else { return Census::default() };
         let Parted { found, weight, .. } = parted;

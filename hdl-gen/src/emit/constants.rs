@@ -9,7 +9,8 @@ use crate::model::{PULLING, inverse_gain};
 use crate::plan::format::FRICTION_FRACTION;
 use crate::plan::standard_error::SHARE_FRACTION;
 use crate::timing::latency::{
-    TAXEL_TO_CEAN, VISIT_TO_BUS, bus_to_sums, bus_to_taxels, bus_to_write, taxels_to_write, turn_to_write,
+    STANDARD_ERROR, TAXEL_TO_CEAN, VISIT_TO_BUS, bus_to_sums, bus_to_taxels, bus_to_write, taxels_to_write,
+    turn_to_write,
 };
 
 /// What a constant in a module of the library is.
@@ -30,7 +31,7 @@ fn constant(module: &str, name: &str) -> i64 {
 #[test]
 fn modules_and_model_have_the_same_constants() {
     let one = 1 << FRICTION_FRACTION;
-    let expected: [(&str, &str, i64); 29] = [
+    let expected: [(&str, &str, i64); 30] = [
         ("sptfra_taxel_stream", "TURN_TO_STRESS", TAXEL_TO_CEAN as i64),
         ("sptfra_spmv_collector", "TAKE_TO_BUS", VISIT_TO_BUS as i64),
         ("sptfra_direction", "CENTROID_FRACTION", line::CENTROID_FRACTION.into()),
@@ -58,6 +59,7 @@ fn modules_and_model_have_the_same_constants() {
         ("sptfra_features_window", "INPUT_ONE", 1 << joint::INPUT_FRACTION),
         ("sptfra_network", "UNIT_BITS", joint::UNIT_BITS.into()),
         ("sptfra_network", "LIMIT", joint::CORRECTION_LIMIT),
+        ("sptfra_standard_error", "LAST", STANDARD_ERROR as i64 - 2),
         ("sptfra_standard_error", "LEAST", 1 << (i64::from(SHARE_FRACTION) + i64::from(ERROR_RANGE[0]))),
         ("sptfra_standard_error", "MOST", (1 << (i64::from(SHARE_FRACTION) + i64::from(ERROR_RANGE[1]))) - 1),
     ];

@@ -8,7 +8,7 @@ use golden::sensor::Sensor;
 use crate::cores::{axis_skid, cordic, float_to_fixed};
 
 // ---- Intake
-/// What a door that drops frames takes more than the skid buffer in its place: a memory is written, then read.
+/// What the ingress FIFO takes more than the skid buffer in its place: a memory is written, then read.
 pub const OVERRUN: u64 = 2 - axis_skid::LATENCY as u64;
 
 // ---- Bz
@@ -51,7 +51,7 @@ pub fn frame_scale(samples: usize) -> u64 {
     5 + u64::from(samples.ilog2())
 }
 
-/// With several samples a beat, from a taxel's turn to its stress in `CeAn`.
+/// From a taxel's turn to its stress in `CeAn`, where a frame that is kept is read.
 pub const TAXEL_TO_CEAN: u64 = 2;
 
 // ---- The array of lanes
@@ -134,3 +134,7 @@ pub const OUTPUT_SKID: u64 = axis_skid::LATENCY as u64;
 pub const OUTPUT_TO_RELEASE: u64 = 3;
 /// From the last beat of a frame being read to the start of the next frame's output.
 pub const OUTPUT_TO_IDLE: u64 = 4;
+
+// ---- The estimator
+/// From a start to the result of `sptfra_standard_error`, which begins with the search.
+pub const STANDARD_ERROR: u64 = 54;
