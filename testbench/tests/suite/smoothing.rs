@@ -3,6 +3,7 @@
 use crate::support::effort::some_of;
 use crate::support::faults::broken;
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint};
+use golden::dead_taxels::DeadTaxels;
 use golden::design::{Design, Outputs, Overrun, PlanKind, Samples, Scaling};
 use golden::scene::normal;
 use golden::solver::Solver;
@@ -166,15 +167,8 @@ fn dropped_frames_leave_the_average_as_it_was() {
     judged(&plan, &sent, &outcome).unwrap();
 }
 
-/// Written at any moment, a rate acts from some frame on: the ones before have the old one.
-#[test]
-fn a_rate_that_is_written_acts_on_whole_frames() {
-    let mut design = designs().swap_remove(0);
-    design.hardware.control = true;
-    "smooth_control".clone_into(&mut design.name);
-    let plan = planned(&design);
-    let built = built(&plan);
-    let sent = packets(&plan, 3);
+/// From which frame on a rate acts that is written in a cycle; none if some answer is that of neither rate.
+fn changed(plan: &Plan, built: &Built, sent: &[Vec<u32>], (cycle, rate): (u64, u32)) -> Option<usize> {
     let answers = |change: usize, rate: u32| {
         let mut model = Model::new(&plan);
         let mut answer = |(index, packet): (usize, &Vec<u32>)| {
@@ -185,19 +179,59 @@ fn a_rate_that_is_written_acts_on_whole_frames() {
         };
         sent.iter().enumerate().map(&mut answer).collect::<Vec<_>>()
     };
+    let mut core = Controlled::new(built.load(5).expect("loads"), 5).expect("has a port");
+    core.plan(cycle, Access::Write { address: address::SMOOTHING, data: rate, strobes: 1 });
+    let outcome = exchange(&mut core, &Traffic::new(sent, timeout(plan)), |_| ()).expect("runs");
+    assert_eq!(core.read(address::SMOOTHING).expect("a reply"), rate);
+    let found: Vec<Vec<u32>> = outcome.exchanges.into_iter().map(|exchange| exchange.words).collect();
+    (0..sent.len()).find(|&change| answers(change, rate) == found)
+}
+
+/// Written at any moment, a rate acts from some frame on: the ones before have the old one.
+#[test]
+fn a_rate_that_is_written_acts_on_whole_frames() {
+    let mut design = designs().swap_remove(0);
+    design.hardware.control = true;
+    "smooth_control".clone_into(&mut design.name);
+    let plan = planned(&design);
+    let built = built(&plan);
+    let sent = packets(&plan, 3);
     let interval = plan.timeline.interval_cycles;
-    let mut changes = Vec::new();
-    for (index, rate) in [0, 1, 3, 5, 8, 15, 0].into_iter().enumerate() {
-        let mut core = Controlled::new(built.load(5).expect("loads"), 5).expect("has a port");
-        let cycle = 2 * interval + 2 * index as u64 * interval + 13 * index as u64;
-        core.plan(cycle, Access::Write { address: address::SMOOTHING, data: rate, strobes: 1 });
-        let outcome = exchange(&mut core, &Traffic::new(&sent, timeout(&plan)), |_| ()).expect("runs");
-        let found: Vec<Vec<u32>> = outcome.exchanges.into_iter().map(|exchange| exchange.words).collect();
-        let change = (0..sent.len()).find(|&change| answers(change, rate) == found);
-        changes.push(change.unwrap_or_else(|| panic!("{rate} in cycle {cycle}")));
-        assert_eq!(core.read(address::SMOOTHING).expect("a reply"), rate);
-    }
+    let write = |(index, rate): (u64, u32)| (2 * interval + (2 * interval + 13) * index, rate);
+    let writes = (0..).zip([0, 1, 3, 5, 8, 15, 0]).map(write);
+    let changes: Vec<usize> = writes.map(|write| changed(&plan, &built, &sent, write).expect("one of both")).collect();
     assert!(changes.is_sorted() && changes[0] > 0 && changes[6] > changes[0] + 6, "{changes:?}");
+    // In each cycle of an interval, so that stresses of a frame are on their way in some.
+    let torn = |built: &Built| {
+        (interval..2 * interval).step_by(3).find(|&cycle| changed(&plan, built, &sent[..6], (cycle, 7)).is_none())
+    };
+    assert_eq!(torn(&built), None);
+    let at_once = broken(
+        &plan,
+        "sptfra_smoothing",
+        "if (opens) begin\n            rate_held",
+        "if (1'b1) begin\n            rate_held",
+    );
+    assert!(torn(&at_once).is_some(), "a rate that acts within a frame");
+}
+
+/// Steps of a dead taxel are those of a sum: they restart nothing, however large.
+#[test]
+fn steps_of_replaced_taxels_restart_nothing() {
+    let mut design = designs().swap_remove(0);
+    (design.input.dead, design.input.smoothing) = (vec![5], 8);
+    "smooth_dead".clone_into(&mut design.name);
+    let plan = planned(&design);
+    let dead = DeadTaxels::new(&design.sensor, design.algorithm.kernel, &[5]);
+    let weights = &dead.weights()[0];
+    assert!(weights.iter().map(|weight| weight.abs()).sum::<f64>() > 1.1, "{weights:?}");
+    // All others step by less than the limit of 6 deviations, so that their sum steps by more.
+    let stepped = |step: f64| weights.iter().map(|weight| step.copysign(*weight) - 1000.0).collect::<Vec<_>>();
+    let steps = [0.0, 5.95, 0.0, -5.95, 0.0, 5.95].map(|deviations| 1000.0 * NOISE * deviations);
+    let sent: Vec<_> = steps.map(|step| packet(&plan, &stepped(step))).into();
+    simulate_exactly(&plan, &built(&plan), &sent, 3).unwrap();
+    let counted = broken(&plan, "sptfra_smoothing", "(takes[2] && !flags[3])", "takes[2]");
+    assert!(simulate_exactly(&plan, &counted, &sent, 3).is_err(), "a step of a dead taxel restarts the average");
 }
 
 #[test]
