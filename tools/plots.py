@@ -351,9 +351,9 @@ def latency():
     """Cycles against taxels, logarithmic both ways, beside the published design."""
     lines = [
         ("line, reduced, no filter", "16", "no filter, 16 lanes", 1, ""),
-        ("line, reduced, no filter", "32", "no filter, 32 lanes", 1, "7 4"),
+        ("line, reduced, no filter", "64", "no filter, 64 lanes", 1, "7 4"),
         ("line, reduced, F2 p = 1", "16", "F2 p = 1, 16 lanes", 2, ""),
-        ("line, reduced, F2 p = 1", "32", "F2 p = 1, 32 lanes", 2, "7 4"),
+        ("line, reduced, F2 p = 1", "64", "F2 p = 1, 64 lanes", 2, "7 4"),
     ]
     published = next(float(row["latency_us"]) * 125 for row in rows("published.csv") if row["design"] == "sparse average")
     left, right, top, bottom = 74, 590, 40, 440

@@ -170,7 +170,7 @@ fn dropped_frames_leave_the_average_as_it_was() {
 /// From which frame on a rate acts that is written in a cycle; none if some answer is that of neither rate.
 fn changed(plan: &Plan, built: &Built, sent: &[Vec<u32>], (cycle, rate): (u64, u32)) -> Option<usize> {
     let answers = |change: usize, rate: u32| {
-        let mut model = Model::new(&plan);
+        let mut model = Model::new(plan);
         let mut answer = |(index, packet): (usize, &Vec<u32>)| {
             if index == change {
                 model.smooth(rate);
