@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The rate of averages, beside the registers of sptfra_registers: SMOOTHING, 0x06C of the map in the design's
-// control/NAME.rdl, and bit 7 of FEATURES.
+// Register SMOOTHING, the k of the moving average with the weight 2^-k, and bit 7 of FEATURES. Beside the registers of
+// sptfra_registers: 0x06C of the map in the design's control/NAME.rdl.
 //
 // Reads answer in the same cycle. A soft reset leaves it as it is.
 
 `default_nettype none
 
 module sptfra_smoothing_register #(
-    // The design's
+    // k after reset, 1 to 8
     parameter [3:0] RATE = 4'd4
 ) (
     input  wire clock,

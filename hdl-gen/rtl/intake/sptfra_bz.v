@@ -46,7 +46,7 @@ module sptfra_bz #(
     parameter [4:0] REPLACED_SHIFT = 5'd17,
     parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
         = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
-    // Crosstalk, smoothing: see sptfra_corrections
+    // Crosstalk: see sptfra_corrections. Smoothing: see sptfra_frame_writer
     parameter CROSSTALK = 0,
     parameter [53:0] CROSSTALK_FACTORS = 54'd0,
     parameter [22:0] SMOOTHING = 23'd0,

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Corrections of a whole frame: replaces its dead taxels, removes crosstalk, then averages, where the design has them.
+// Corrections of a whole frame: replaces its dead taxels, then removes crosstalk, where the design has them.
 //
-// Without them a beat passes in the same cycle. The first two keep the frame until it is complete: see sptfra_replace
-// and sptfra_crosstalk. Behind the last a stress has the average with it above it: see sptfra_smoothing.
+// Without either a beat passes in the same cycle. Each keeps the frame until it is complete: see sptfra_replace and
+// sptfra_crosstalk.
 
 `default_nettype none
 
@@ -25,16 +25,13 @@ module sptfra_corrections #(
     // Fraction bits of the factors of crosstalk, 0 without any, and the factors: see sptfra_crosstalk
     parameter CROSSTALK = 0,
     parameter [53:0] CROSSTALK_FACTORS = 54'd0, // of rows, columns, frame
-    // {fraction bits of the factor, factor} of a step that restarts the average, 0 without any: see sptfra_smoothing
-    parameter [22:0] SMOOTHING = 23'd0,
     // Prefix of the ROM file names, and what they begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
     // Derived
     parameter TAXELS = COLUMNS * ROWS,
     parameter TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1,
-    parameter PLACES = (REPLACEABLE != 0) ? REPLACEABLE : 1,
-    parameter CANDIDATES = (SMOOTHING != 0) ? 2 : 1
+    parameter PLACES = (REPLACEABLE != 0) ? REPLACEABLE : 1
 ) (
     input  wire clock,
     input  wire reset,
@@ -48,34 +45,21 @@ module sptfra_corrections #(
     // Of dead taxels: see sptfra_replace
     input  wire [TAXEL_WIDTH-1:0] taxel_ahead,
     input  wire [34*PLACES+8:0] map,
-    // Of the average
-    input  wire frame_opens,
-    input  wire [3:0] smoothing,
     output wire replace_busy, // from a frame's last beat in to its last stress out
-    output wire busy, // behind that
+    output wire crosstalk_busy,
     // The same corrected
     output wire takes,
     output wire ends,
     output wire bad_length,
-    output wire [27*SAMPLES*CANDIDATES-1:0] stresses,
+    output wire [27*SAMPLES-1:0] stresses,
     output wire [SAMPLES-1:0] saturated,
     output wire [SAMPLES-1:0] not_finite,
-    output wire replaced, // it took a dead taxel's place
-    // Of the average, as of sptfra_smoothing; {valid, stress, replaced, last}
-    output wire decided,
-    output wire averaged,
-    input  wire over,
-    output wire [29:0] smoothed
+    output wire replaced // it took a dead taxel's place
 );
 
-    wire true_takes, true_ends, true_bad_length, true_replaced, crosstalk_busy, smoothing_busy;
-    wire [27*SAMPLES-1:0] true_stresses;
-    wire [SAMPLES-1:0] true_saturated, true_not_finite;
     wire whole_takes, whole_ends, whole_bad_length, whole_replaced;
     wire [27*SAMPLES-1:0] whole_stresses;
     wire [SAMPLES-1:0] whole_saturated, whole_not_finite;
-
-    assign busy = crosstalk_busy || smoothing_busy;
 
     generate
         if (REPLACEABLE != 0) begin : gen_replace
@@ -134,57 +118,20 @@ module sptfra_corrections #(
                 .in_stress      (whole_stresses[26:0]),
                 .in_flags       ({whole_saturated[0], whole_not_finite[0], whole_replaced}),
                 .busy           (crosstalk_busy),
-                .out_takes      (true_takes),
-                .out_ends       (true_ends),
-                .out_bad_length (true_bad_length),
-                .out_stress     (true_stresses[26:0]),
-                .out_flags      ({true_saturated[0], true_not_finite[0], true_replaced})
-            );
-        end else begin : gen_without
-            assign {true_takes, true_ends, true_bad_length, true_replaced, crosstalk_busy}
-                = {whole_takes, whole_ends, whole_bad_length, whole_replaced, 1'b0};
-            assign {true_stresses, true_saturated, true_not_finite}
-                = {whole_stresses, whole_saturated, whole_not_finite};
-            wire _unused_crosstalk = &{1'b0, CROSSTALK_FACTORS};
-        end
-        if (SMOOTHING != 0) begin : gen_smoothing
-            sptfra_smoothing #(
-                .TAXELS   (TAXELS),
-                .FRACTION (SMOOTHING[22:17]),
-                .FACTOR   (SMOOTHING[16:0])
-            ) smoothing_of_frames (
-                .clock          (clock),
-                .reset          (reset),
-                .opens          (frame_opens),
-                .rate           (smoothing),
-                .in_takes       (true_takes),
-                .in_ends        (true_ends),
-                .in_bad_length  (true_bad_length),
-                .in_stress      (true_stresses[26:0]),
-                .in_flags       ({true_saturated[0], true_not_finite[0], true_replaced}),
-                .busy           (smoothing_busy),
                 .out_takes      (takes),
                 .out_ends       (ends),
                 .out_bad_length (bad_length),
                 .out_stress     (stresses[26:0]),
-                .out_average    (stresses[27*SAMPLES*CANDIDATES-1 -: 27]),
-                .out_flags      ({saturated[0], not_finite[0], replaced}),
-                .decided        (decided),
-                .averaged       (averaged),
-                .over           (over),
-                .shown_valid    (smoothed[29]),
-                .shown          (smoothed[28:2]),
-                .shown_replaced (smoothed[1]),
-                .shown_last     (smoothed[0])
+                .out_flags      ({saturated[0], not_finite[0], replaced})
             );
-        end else begin : gen_frames
-            assign {takes, ends, bad_length, replaced} = {true_takes, true_ends, true_bad_length, true_replaced};
-            assign {stresses, saturated, not_finite} = {true_stresses, true_saturated, true_not_finite};
-            assign {decided, averaged, smoothing_busy, smoothed} = 33'd0;
-            wire _unused_smoothing = &{1'b0, frame_opens, smoothing, over};
+        end else begin : gen_without
+            assign {takes, ends, bad_length, replaced, crosstalk_busy}
+                = {whole_takes, whole_ends, whole_bad_length, whole_replaced, 1'b0};
+            assign {stresses, saturated, not_finite} = {whole_stresses, whole_saturated, whole_not_finite};
+            wire _unused_crosstalk = &{1'b0, CROSSTALK_FACTORS};
         end
-        if ((REPLACEABLE == 0) && (CROSSTALK == 0) && (SMOOTHING == 0)) begin : gen_none
-            wire _unused_none = &{1'b0, clock, reset, STRESS_BOUND};
+        if ((REPLACEABLE == 0) && (CROSSTALK == 0)) begin : gen_neither
+            wire _unused_neither = &{1'b0, clock, reset, STRESS_BOUND};
         end
     endgenerate
 

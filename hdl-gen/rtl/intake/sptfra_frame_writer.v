@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Frame writer of Bz: corrects a frame, keeps its stresses, writes them to the lanes, scaled and folded, and shows them
-// to CeAn one by one.
+// Frame writer of Bz: corrects and averages a frame, writes it to the lanes, scaled and folded, and streams it to CeAn.
 //
 // Beat to CeAn: as of sptfra_taxel_stream or sptfra_smoothing. Beat to write: 5 cycles, with SCALED see
 // sptfra_frame_scale; with SMOOTHING the lanes wait for the frame's end. All later by what sptfra_corrections takes.
@@ -32,7 +31,7 @@ module sptfra_frame_writer #(
     // Crosstalk: see sptfra_corrections
     parameter CROSSTALK = 0,
     parameter [53:0] CROSSTALK_FACTORS = 54'd0,
-    // Smoothing: see sptfra_corrections
+    // {fraction bits of the factor, factor} of a step that restarts the average, 0 without any: see sptfra_smoothing
     parameter [22:0] SMOOTHING = 23'd0,
     // Prefix of the ROM file names, and what they begin with
     parameter ROM_DIR = "",
@@ -102,12 +101,10 @@ module sptfra_frame_writer #(
         end
     endgenerate
 
-    // ---- Dead taxels, crosstalk, smoothing
-    localparam CANDIDATES = (SMOOTHING != 0) ? 2 : 1; // stresses, and averages with them
-    wire takes, ends, bad_length_now, replaced, corrections_busy, decided, averaged, over;
-    wire [27*SAMPLES*CANDIDATES-1:0] stresses;
-    wire [SAMPLES-1:0] saturated, not_finite;
-    wire [29:0] smoothed;
+    // ---- Dead taxels, crosstalk
+    wire crosstalk_busy, corrected_takes, corrected_ends, corrected_bad_length, corrected_replaced;
+    wire [27*SAMPLES-1:0] corrected;
+    wire [SAMPLES-1:0] corrected_saturated, corrected_not_finite;
 
     sptfra_corrections #(
         .COLUMNS           (COLUMNS),
@@ -121,45 +118,105 @@ module sptfra_frame_writer #(
         .REPLACED_TAXELS   (REPLACED_TAXELS),
         .CROSSTALK         (CROSSTALK),
         .CROSSTALK_FACTORS (CROSSTALK_FACTORS),
-        .SMOOTHING         (SMOOTHING),
         .ROM_DIR           (ROM_DIR),
         .ROM_NAME          (ROM_NAME)
     ) corrections (
-        .clock         (clock),
-        .reset         (reset),
-        .in_takes      (in_takes),
-        .in_ends       (in_ends),
-        .in_bad_length (in_bad_length),
-        .in_stresses   (in_stresses),
-        .in_saturated  (in_saturated),
-        .in_not_finite (in_not_finite),
-        .taxel_ahead   (taxel_ahead),
-        .map           (map),
-        .frame_opens   (frame_opens),
-        .smoothing     (smoothing),
-        .replace_busy  (replace_busy),
-        .busy          (corrections_busy),
-        .takes         (takes),
-        .ends          (ends),
-        .bad_length    (bad_length_now),
-        .stresses      (stresses),
-        .saturated     (saturated),
-        .not_finite    (not_finite),
-        .replaced      (replaced),
-        .decided       (decided),
-        .averaged      (averaged),
-        .over          (over),
-        .smoothed      (smoothed)
+        .clock          (clock),
+        .reset          (reset),
+        .in_takes       (in_takes),
+        .in_ends        (in_ends),
+        .in_bad_length  (in_bad_length),
+        .in_stresses    (in_stresses),
+        .in_saturated   (in_saturated),
+        .in_not_finite  (in_not_finite),
+        .taxel_ahead    (taxel_ahead),
+        .map            (map),
+        .replace_busy   (replace_busy),
+        .crosstalk_busy (crosstalk_busy),
+        .takes          (corrected_takes),
+        .ends           (corrected_ends),
+        .bad_length     (corrected_bad_length),
+        .stresses       (corrected),
+        .saturated      (corrected_saturated),
+        .not_finite     (corrected_not_finite),
+        .replaced       (corrected_replaced)
     );
 
-    // ---- The frame as it comes
-    reg ended; // its last beat is there
+    // ---- Smoothing, and the way to CeAn taxel by taxel
+    localparam CANDIDATES = (SMOOTHING != 0) ? 2 : 1; // stresses, and averages with them
+    reg ended; // the frame's last beat is there
     reg [COUNT_WIDTH-1:0] written; // beats that are there
+    wire smoothing_busy, takes, ends, bad_length_now, decided, averaged, over, shown_replaced;
+    wire [27*SAMPLES*CANDIDATES-1:0] stresses;
+    wire [SAMPLES-1:0] saturated, not_finite;
+
+    generate
+        if (SMOOTHING != 0) begin : gen_smoothed
+            wire replaced;
+
+            sptfra_smoothing #(
+                .TAXELS   (TAXELS),
+                .FRACTION (SMOOTHING[22:17]),
+                .FACTOR   (SMOOTHING[16:0])
+            ) smoothing_of_frames (
+                .clock          (clock),
+                .reset          (reset),
+                .opens          (frame_opens),
+                .rate           (smoothing),
+                .in_takes       (corrected_takes),
+                .in_ends        (corrected_ends),
+                .in_bad_length  (corrected_bad_length),
+                .in_stress      (corrected[26:0]),
+                .in_flags       ({corrected_saturated[0], corrected_not_finite[0], corrected_replaced}),
+                .busy           (smoothing_busy),
+                .out_takes      (takes),
+                .out_ends       (ends),
+                .out_bad_length (bad_length_now),
+                .out_stress     (stresses[26:0]),
+                .out_average    (stresses[27*SAMPLES*CANDIDATES-1 -: 27]),
+                .out_flags      ({saturated[0], not_finite[0], replaced}),
+                .decided        (decided),
+                .averaged       (averaged),
+                .over           (over),
+                .shown_valid    (stress_valid),
+                .shown          (stress),
+                .shown_replaced (shown_replaced),
+                .shown_last     (frame_done)
+            );
+
+            wire _unused_replaced = &{1'b0, replaced};
+        end else begin : gen_as_they_come
+            assign {takes, ends, bad_length_now, shown_replaced}
+                = {corrected_takes, corrected_ends, corrected_bad_length, corrected_replaced};
+            assign {stresses, saturated, not_finite} = {corrected, corrected_saturated, corrected_not_finite};
+            assign {smoothing_busy, decided, averaged} = 3'b000;
+
+            sptfra_taxel_stream #(
+                .TAXELS  (TAXELS),
+                .SAMPLES (SAMPLES)
+            ) taxel_stream (
+                .clock        (clock),
+                .reset        (reset),
+                .takes        (takes),
+                .beat         (written),
+                .stresses     (stresses[27*SAMPLES-1:0]),
+                .ends         (ends),
+                .ended        (ended),
+                .restart      (over),
+                .stress_valid (stress_valid),
+                .stress       (stress),
+                .done         (frame_done)
+            );
+
+            wire _unused_smoothing = &{1'b0, smoothing};
+        end
+    endgenerate
+
+    // ---- The frame as it comes
     reg bad_length;
     reg seen_saturated;
     reg seen_not_finite;
     reg [29:0] replaced_before; // without the stress that is shown
-    wire shown_replaced;
     wire [26:0] magnitude = stress[26] ? -stress : stress;
     wire folded;
     reg told_before;
@@ -167,7 +224,7 @@ module sptfra_frame_writer #(
     wire [31:0] written_wide = {{(32-COUNT_WIDTH){1'b0}}, written};
 
     assign over = folded && (frame_done || told_before); // the lanes have it all, and CeAn its flags
-    assign busy = ended || corrections_busy;
+    assign busy = ended || crosstalk_busy || smoothing_busy;
     assign frame_saturated = seen_saturated || (takes && ((saturated & counted) != {SAMPLES{1'b0}}));
     assign frame_not_finite = seen_not_finite || (takes && ((not_finite & counted) != {SAMPLES{1'b0}}));
     assign frame_bad_length = ends ? bad_length_now : bad_length;
@@ -199,7 +256,7 @@ module sptfra_frame_writer #(
         end
     end
 
-    // ---- Its scale: before it is known what it is made of, that of each
+    // ---- Scales of the frame and of its average: which is used is known later
     wire whole; // the lanes may have all of it
     genvar candidate;
 
@@ -279,37 +336,6 @@ module sptfra_frame_writer #(
         .write_data    (write_data),
         .frame_written (frame_written)
     );
-
-    // ---- To CeAn, taxel by taxel
-    generate
-        if (SMOOTHING != 0) begin : gen_smoothed
-            assign {stress_valid, stress, shown_replaced, frame_done} = smoothed;
-            wire _unused_replaced = &{1'b0, replaced};
-        end else begin : gen_as_they_come
-            wire [26:0] shown;
-
-            sptfra_taxel_stream #(
-                .TAXELS  (TAXELS),
-                .SAMPLES (SAMPLES)
-            ) taxel_stream (
-                .clock        (clock),
-                .reset        (reset),
-                .takes        (takes),
-                .beat         (written),
-                .stresses     (stresses[27*SAMPLES-1:0]),
-                .ends         (ends),
-                .ended        (ended),
-                .restart      (over),
-                .stress_valid (stress_valid),
-                .stress       (shown),
-                .done         (frame_done)
-            );
-
-            assign stress = $signed(shown);
-            assign shown_replaced = replaced;
-            wire _unused_smoothed = &{1'b0, smoothed};
-        end
-    endgenerate
 
     // ---- Banks
     reg [1:0] banks_taken;

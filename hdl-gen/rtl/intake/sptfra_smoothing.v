@@ -3,13 +3,14 @@
 //
 // Exponential moving average of each taxel over frames, with the weight 2^-rate; a large step of any taxel restarts it.
 //
-// A stress passes in 4 cycles, beside it the average with it in it. Which of the two the frame is made of is known one
-// cycle after its end has passed, and held. Then the frame is shown taxel by taxel. The frame and its averages go to
-// the bank of the memory that does not hold, and the banks change places at the end of a good frame.
+// Latency: 4 cycles from a stress to the stress and its new average. One cycle after the frame's end `decided` says
+// that it is known whether the frame is `averaged` or restarts the average. Then it is read out, a taxel a cycle.
+// Averages are double-buffered: a frame writes the spare bank, and a good frame swaps the banks.
 
 `default_nettype none
 
 module sptfra_smoothing #(
+    // Of a frame
     parameter TAXELS = 100,
     // A step beyond FACTOR / 2^FRACTION of the frame's largest stress restarts the average
     parameter FRACTION = 21,
@@ -51,13 +52,13 @@ module sptfra_smoothing #(
     // ---- Of the frame
     reg [3:0] rate_held;
     reg [TAXEL_WIDTH-1:0] place; // of the stress that comes, or is shown
-    reg bank; // of the memory: it holds
-    reg holds; // there is an average
+    reg bank; // of the current average
+    reg holds; // a first frame has been averaged
     reg bank_averaged; // the bank's frame was made of averages
     reg is_bad; // so far
     reg is_bad_length;
     reg shows;
-    reg shows_other; // what is not in the bank that holds
+    reg shows_other; // a bad frame, which stays in the spare bank
     reg shows_1;
     reg shows_last_1;
     reg [4:1] takes;

@@ -197,11 +197,9 @@ fn half_a_frame_by_another_curve_is_noticed() {
     let subject = subject();
     let interval = subject.plan.timeline.interval_cycles;
     let [other_curve, other_gains] = others(subject);
-    let other_floor = Bank { noise: (1 << 26) - 1, ..subject.calibration().power_up.clone() };
     for (module, from, to, bank) in some_of([
         ("sptfra_bz", "wire bank = in_frame ? bank_held : active;", "wire bank = active;", &other_curve),
         ("sptfra_bz", "((CURVE_LEVELS == 0) ? bank : bank_held)", "(active)", &other_gains),
-        ("sptfra_frame_context", "thresholds <= of_cean;", "thresholds <= {of_cean[58:27], in_noise};", &other_floor),
         (
             "sptfra_banks",
             ".read_bank    (bank),\n                .read_segment",
