@@ -6,8 +6,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::bodies::{Body, MOST};
 use crate::calibrate::recorded::{Measured, read_forces};
+use crate::contacts::{ContactForces, MOST};
 use crate::frames::{self, FrameError};
 use crate::geometry::{self, GeometryError, OtherSensor};
 use crate::metrics::Outcome;
@@ -58,8 +58,8 @@ pub fn columns(records: usize, taxels: usize) -> Vec<String> {
 }
 
 /// A contact as its columns, but for the torque.
-pub fn record(body: &Body) -> [f64; 9] {
-    let Body { taxels, status, centre_m: [x, y], force: [fx, fy, fz], mu, standard_error, .. } = *body;
+pub fn record(contact: &ContactForces) -> [f64; 9] {
+    let ContactForces { taxels, status, centre_m: [x, y], force: [fx, fy, fz], mu, standard_error, .. } = *contact;
     [taxels as f64, f64::from(status.0), x, y, fx, fy, fz, mu, standard_error]
 }
 
@@ -67,33 +67,33 @@ pub fn record(body: &Body) -> [f64; 9] {
 pub fn row(solution: &Solution, with_field: bool) -> Vec<f64> {
     let [fx, fy, fz] = solution.resultant;
     let [tx, ty, tz] = solution.torque;
-    let Solution { status, mu, phi, mu_x, mu_y, standard_error, bodies, .. } = solution;
-    let summary = [fx, fy, fz, *mu, *phi, *mu_x, *mu_y, tx, ty, tz, *standard_error, *bodies as f64];
+    let Solution { status, mu, phi, mu_x, mu_y, standard_error, contacts, .. } = solution;
+    let summary = [fx, fy, fz, *mu, *phi, *mu_x, *mu_y, tx, ty, tz, *standard_error, *contacts as f64];
     let taxels = if with_field { solution.field[0].len() } else { 0 };
     let field = (0..taxels).flat_map(|taxel| solution.field.each_ref().map(|component| component[taxel]));
-    let bodies = of_bodies(&solution.records);
-    std::iter::once(f64::from(status.0)).chain(summary).chain(bodies).chain(field).collect()
+    let contacts = of_contacts(&solution.records);
+    std::iter::once(f64::from(status.0)).chain(summary).chain(contacts).chain(field).collect()
 }
 
 /// Contacts as their columns: all records, then all torques.
-fn of_bodies(bodies: &[Body]) -> impl Iterator<Item = f64> {
-    bodies.iter().flat_map(record).chain(bodies.iter().flat_map(|body| body.torque))
+fn of_contacts(contacts: &[ContactForces]) -> impl Iterator<Item = f64> {
+    contacts.iter().flat_map(record).chain(contacts.iter().flat_map(|contact| contact.torque))
 }
 
 /// The truth of a scene's frame in the form of a solution with status 0, with a record of each contact if there are several.
 pub fn reference_row(frame: &SceneFrame) -> Vec<f64> {
     let ([fx, fy, fz], [tx, ty, tz]) = (frame.force, frame.torque);
     let normal = fz.abs();
-    let bodies = frame.bodies.len() as f64;
+    let contacts = frame.contacts.len() as f64;
     let mut row =
-        vec![0.0, fx, fy, fz, frame.friction, frame.direction, fx / normal, fy / normal, tx, ty, tz, 0.0, bodies];
-    row.extend(of_bodies(&frame.bodies[..records_of(frame)]));
+        vec![0.0, fx, fy, fz, frame.friction, frame.direction, fx / normal, fy / normal, tx, ty, tz, 0.0, contacts];
+    row.extend(of_contacts(&frame.contacts[..records_of(frame)]));
     row
 }
 
 /// Records of a scene's frame: one of each contact, and none of a single one.
 fn records_of(frame: &SceneFrame) -> usize {
-    if frame.bodies.len() > 1 { frame.bodies.len() } else { 0 }
+    if frame.contacts.len() > 1 { frame.contacts.len() } else { 0 }
 }
 
 /// Writes solutions, with the force field of each taxel if `with_field`, the whole file or nothing.
@@ -201,7 +201,11 @@ fn measured_outcomes(path: &Path, frames: usize, measured: &Measured) -> Result<
 /// # Errors
 ///
 /// As [`read_outcomes`].
-pub fn read_contacts(path: &Path, frames: usize, sensor: &Sensor) -> Result<Option<Vec<Vec<Body>>>, FrameError> {
+pub fn read_contacts(
+    path: &Path,
+    frames: usize,
+    sensor: &Sensor,
+) -> Result<Option<Vec<Vec<ContactForces>>>, FrameError> {
     let rows = read_rows(path, frames)?;
     let (records, torques) = if let Some(line) = frames::first_line(path)? {
         let count = |of: &str| line.split([',', ';', '\t', ' ']).filter(|name| is_contact_column(name, of)).count();
@@ -215,24 +219,24 @@ pub fn read_contacts(path: &Path, frames: usize, sensor: &Sensor) -> Result<Opti
             _ => (0, 0),
         }
     };
-    let bodies = |row: &Vec<f64>| match row.get(SUMMARY.len()..) {
+    let contacts = |row: &Vec<f64>| match row.get(SUMMARY.len()..) {
         Some(rest) if records > 0 => {
-            let mut bodies: Vec<Body> = rest.as_chunks::<9>().0.iter().take(records).map(body).collect();
+            let mut contacts: Vec<ContactForces> = rest.as_chunks::<9>().0.iter().take(records).map(contact).collect();
             let behind = rest.get(records * OF_CONTACT.len()..).unwrap_or_default();
-            for (body, torque) in bodies.iter_mut().zip(behind.as_chunks::<3>().0.iter().take(torques)) {
-                body.torque = *torque;
+            for (contact, torque) in contacts.iter_mut().zip(behind.as_chunks::<3>().0.iter().take(torques)) {
+                contact.torque = *torque;
             }
-            bodies.retain(|body| *body != Body::default());
-            Some(bodies)
+            contacts.retain(|contact| *contact != ContactForces::default());
+            Some(contacts)
         }
         Some(_) if row[SUMMARY.len() - 1] <= 1.0 => {
             let (force, torque) = ([row[1], row[2], row[3]], [row[8], row[9], row[10]]);
-            let centre_m = Body::centre_of(sensor, force, torque);
-            Some(vec![Body { centre_m, force, torque, mu: row[4], ..Body::default() }])
+            let centre_m = ContactForces::centre_of(sensor, force, torque);
+            Some(vec![ContactForces { centre_m, force, torque, mu: row[4], ..ContactForces::default() }])
         }
         _ => None,
     };
-    Ok(rows.iter().map(bodies).collect())
+    Ok(rows.iter().map(contacts).collect())
 }
 
 /// Whether a column has this of a contact, such as `_F_z`.
@@ -241,13 +245,29 @@ fn is_contact_column(name: &str, of: &str) -> bool {
 }
 
 /// The contact of a record's columns.
-fn body(&[taxels, status, x, y, fx, fy, fz, mu, standard_error]: &[f64; 9]) -> Body {
+fn contact(&[taxels, status, x, y, fx, fy, fz, mu, standard_error]: &[f64; 9]) -> ContactForces {
     let (taxels, status) = (taxels as usize, Status(status as u32));
-    Body { taxels, status, centre_m: [x, y], force: [fx, fy, fz], mu, standard_error, ..Body::default() }
+    ContactForces {
+        taxels,
+        status,
+        centre_m: [x, y],
+        force: [fx, fy, fz],
+        mu,
+        standard_error,
+        ..ContactForces::default()
+    }
 }
 
 /// The lines of a force file, each long enough.
 fn read_rows(path: &Path, frames: usize) -> Result<Vec<Vec<f64>>, FrameError> {
+    let header = frames::first_line(path)?.unwrap_or_default();
+    if header.split([',', ';', '\t', ' ']).any(|name| name.trim().starts_with("body0_")) {
+        return Err(FrameError::Format {
+            path: path.to_path_buf(),
+            what: "a force file of an older version, whose columns body0_taxels, body0_status … number contacts from 0",
+            remedy: "rename these columns contact1_taxels, contact1_status …, numbered from 1, or write the file anew",
+        });
+    }
     let rows = frames::read_rows(path, |found| (found < NEEDED).then_some(NEEDED))?;
     if rows.len() != frames {
         return Err(FrameError::Count { path: path.to_path_buf(), found: rows.len(), expected: frames });

@@ -23,10 +23,10 @@
 //! presses on the sensor and `(f_x, f_y)` is the force the object exerts along the surface.
 
 pub mod bank;
-pub mod bodies;
 pub mod calibrate;
 pub mod check;
 pub mod choose;
+pub mod contacts;
 pub mod crosstalk;
 pub mod dead_taxels;
 pub mod design;

@@ -1,6 +1,6 @@
 //! Arrays: frames on their way in, forces on their way out.
 
-use golden::bodies::Body;
+use golden::contacts::ContactForces;
 use golden::design::Design;
 use golden::frames::of_grid;
 use golden::sensor::Sensor;
@@ -141,9 +141,9 @@ pub struct Forces {
     resultant: Vec<f64>,
     torque: Vec<f64>,
     standard_error: Vec<f64>,
-    bodies: Vec<u8>,
+    contacts: Vec<u8>,
     /// So many of each frame.
-    records: Vec<Body>,
+    records: Vec<ContactForces>,
     of_frame: usize,
     field: Vec<f64>,
     has_field: bool,
@@ -158,13 +158,13 @@ pub struct Piece<'a> {
     resultant: &'a mut [f64],
     torque: &'a mut [f64],
     standard_error: &'a mut [f64],
-    bodies: &'a mut [u8],
-    records: &'a mut [Body],
+    contacts: &'a mut [u8],
+    records: &'a mut [ContactForces],
     field: &'a mut [f64],
 }
 
 impl Forces {
-    /// Zeros for so many frames, each with so many records of bodies, with a field or without.
+    /// Zeros for so many frames, each with so many records of contacts, with a field or without.
     pub fn zeros(sensor: &Sensor, frames: usize, records: usize, with_field: bool) -> Self {
         Self {
             status: vec![Status::default(); frames],
@@ -174,8 +174,8 @@ impl Forces {
             resultant: vec![0.0; 3 * frames],
             torque: vec![0.0; 3 * frames],
             standard_error: vec![0.0; frames],
-            bodies: vec![0; frames],
-            records: vec![Body::default(); frames * records],
+            contacts: vec![0; frames],
+            records: vec![ContactForces::default(); frames * records],
             of_frame: records,
             field: vec![0.0; if with_field { 3 * sensor.taxels() * frames } else { 0 }],
             has_field: with_field,
@@ -192,10 +192,10 @@ impl Forces {
         let places = self.status.chunks_mut(PIECE).zip(self.friction.chunks_mut(PIECE));
         let places = places.zip(self.direction.chunks_mut(PIECE)).zip(self.friction_xy.chunks_mut(2 * PIECE));
         let places = places.zip(self.resultant.chunks_mut(3 * PIECE)).zip(self.torque.chunks_mut(3 * PIECE));
-        let places = places.zip(self.standard_error.chunks_mut(PIECE)).zip(self.bodies.chunks_mut(PIECE));
+        let places = places.zip(self.standard_error.chunks_mut(PIECE)).zip(self.contacts.chunks_mut(PIECE));
         let places = places.zip(records.into_iter().zip(fields));
         let piece = |(
-            (((((((status, friction), direction), friction_xy), resultant), torque), error), bodies),
+            (((((((status, friction), direction), friction_xy), resultant), torque), error), contacts),
             (records, field),
         )| Piece {
             status,
@@ -205,15 +205,15 @@ impl Forces {
             resultant,
             torque,
             standard_error: error,
-            bodies,
+            contacts,
             records,
             field,
         };
         places.map(piece).collect()
     }
 
-    /// What decides which frames and bodies slip.
-    pub fn of_slips(&mut self) -> impl Iterator<Item = (&mut Status, f64, &mut [Body])> {
+    /// What decides which frames and contacts slip.
+    pub fn of_slips(&mut self) -> impl Iterator<Item = (&mut Status, f64, &mut [ContactForces])> {
         let records = split(&mut self.records, self.of_frame, &vec![1; self.status.len()]);
         let frames = self.status.iter_mut().zip(self.friction.iter().copied()).zip(records);
         frames.map(|((status, friction), records)| (status, friction, records))
@@ -233,10 +233,10 @@ impl Forces {
         put("direction", self.direction, &[frames])?;
         put("friction_xy", self.friction_xy, &[frames, 2])?;
         put("standard_error", self.standard_error, &[frames])?;
-        kwargs.set_item("contacts", self.bodies.into_pyarray(py))?;
+        kwargs.set_item("contacts", self.contacts.into_pyarray(py))?;
         if self.of_frame > 0 {
-            let of_body = |body| golden::forces::record(body).into_iter().chain(body.torque);
-            let values: Vec<f64> = self.records.iter().flat_map(of_body).collect();
+            let of_contact = |contact| golden::forces::record(contact).into_iter().chain(contact.torque);
+            let values: Vec<f64> = self.records.iter().flat_map(of_contact).collect();
             let each = golden::forces::OF_CONTACT.len() + golden::forces::TORQUE_OF_CONTACT.len();
             let values = array(py, values, &[frames, self.of_frame, each])?;
             kwargs.set_item("records", py.import("sptfra.forces")?.getattr("_records")?.call1((values,))?)?;
@@ -255,7 +255,7 @@ impl Forces {
 impl Piece<'_> {
     /// Puts a solution in its place.
     pub fn put(&mut self, index: usize, solution: &Solution) {
-        let Solution { status, resultant, torque, standard_error, bodies, records, mu, phi, mu_x, mu_y, field } =
+        let Solution { status, resultant, torque, standard_error, contacts, records, mu, phi, mu_x, mu_y, field } =
             solution;
         self.status[index] = *status;
         (self.friction[index], self.direction[index]) = (*mu, *phi);
@@ -263,7 +263,7 @@ impl Piece<'_> {
         self.resultant[3 * index..][..3].copy_from_slice(resultant);
         self.torque[3 * index..][..3].copy_from_slice(torque);
         self.standard_error[index] = *standard_error;
-        self.bodies[index] = *bodies as u8;
+        self.contacts[index] = *contacts as u8;
         self.records[records.len() * index..][..records.len()].copy_from_slice(records);
         let taxels = field[0].len();
         if self.field.is_empty() {

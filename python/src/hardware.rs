@@ -93,5 +93,5 @@ fn solution(answer: Answer) -> Solution {
     let Answer { status, resultant, torque, mu, phi, mu_xy, standard_error, contacts, field, .. } = answer;
     let (status, [mu_x, mu_y]) = (golden::solver::Status(status), mu_xy);
     let records = Vec::new();
-    Solution { status, resultant, torque, standard_error, bodies: contacts, records, mu, phi, mu_x, mu_y, field }
+    Solution { status, resultant, torque, standard_error, contacts, records, mu, phi, mu_x, mu_y, field }
 }

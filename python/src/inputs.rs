@@ -212,8 +212,8 @@ fn known(frame: &SceneFrame) -> Solution {
         phi: frame.direction,
         mu_x: fx / fz.abs(),
         mu_y: fy / fz.abs(),
-        bodies: frame.bodies.len(),
-        records: if frame.bodies.len() > 1 { frame.bodies.clone() } else { Vec::new() },
+        contacts: frame.contacts.len(),
+        records: if frame.contacts.len() > 1 { frame.contacts.clone() } else { Vec::new() },
         ..Solution::zeros(Status::default(), 0)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use golden::bodies::Body;
+use golden::contacts::ContactForces;
 use golden::smoothing::Average as InnerAverage;
 use golden::solver::{PIECE, Slips, Solver as Inner, SolverError, Status};
 use pyo3::prelude::*;
@@ -99,18 +99,18 @@ fn slips_of(before: &Bound<'_, PyAny>) -> PyResult<Slips> {
     let Some(last) = status.iter().rposition(|status| status & unread == 0) else { return Ok(Slips::default()) };
     let status = status[last];
     let records = before.getattr("records")?;
-    let mut bodies = Vec::new();
+    let mut contacts = Vec::new();
     if !records.is_none() {
         for record in records.get_item(last)?.try_iter()? {
             let record = record?;
             let value = |name: &str| record.get_item(name)?.extract::<f64>();
-            bodies.push(Body {
+            contacts.push(ContactForces {
                 taxels: value("taxels")? as usize,
                 status: Status(value("status")? as u32),
                 centre_m: [value("x")?, value("y")?],
-                ..Body::default()
+                ..ContactForces::default()
             });
         }
     }
-    Ok(Slips::of(Status(status), &bodies))
+    Ok(Slips::of(Status(status), &contacts))
 }

@@ -202,7 +202,7 @@ class Solving(unittest.TestCase):
             np.testing.assert_allclose(
                 forces.records[name].sum(axis=1), forces.torque[:, "xyz".index(name[-1])], atol=1e-12)
         # The truth's, of (0, 1.2, -3) N at (-8, -3) mm from the middle, and of (0, -1.2, -2) N at (9, 3) mm.
-        truth = [[scene.truth.records[name][0, body] for name in ("T_x", "T_y", "T_z")] for body in (0, 1)]
+        truth = [[scene.truth.records[name][0, contact] for name in ("T_x", "T_y", "T_z")] for contact in (0, 1)]
         np.testing.assert_allclose(truth, [[0.009, -0.024, -0.0096], [-0.006, 0.018, -0.0108]], atol=1e-9)
         self.assertFalse(forces.records["taxels"][:, 2].any())
         self.assertTrue((forces.records["taxels"][:, :2] > 0).all())

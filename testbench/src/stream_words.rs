@@ -74,7 +74,7 @@ impl From<Solution> for Answer {
             phi: solution.phi,
             mu_xy: [solution.mu_x, solution.mu_y],
             standard_error: solution.standard_error,
-            contacts: solution.bodies,
+            contacts: solution.contacts,
             field: solution.field,
         }
     }

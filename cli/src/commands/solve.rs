@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use golden::check::check;
 use golden::design::Design;
 use golden::forces;
-use golden::metrics::{BodyErrors, ERROR_NAMES, ErrorSummary, Outcome, Quantiles};
+use golden::metrics::{ContactErrors, ERROR_NAMES, ErrorSummary, Outcome, Quantiles};
 use golden::progress::Progress;
 use golden::resolved::keep_apart;
 use golden::solver::{Solution, Solver, Status};
@@ -69,7 +69,7 @@ struct SolveReport<'a> {
     errors: Option<ErrorSummary>,
     /// Those of each contact, where the design and the true forces separate several.
     #[serde(skip_serializing_if = "Option::is_none")]
-    contacts: Option<BodyErrors>,
+    contacts: Option<ContactErrors>,
 }
 
 /// Solves frames and writes the forces, or prints them as they come.
@@ -124,7 +124,7 @@ pub fn run(args: &Args) -> message::Result {
             let found = solutions.iter().map(Outcome::from);
             ErrorSummary::new(&truth.into_iter().zip(found).collect::<Vec<_>>())
         }),
-        contacts: contacts.map(|truth| BodyErrors::new(truth.iter().zip(&solutions))),
+        contacts: contacts.map(|truth| ContactErrors::new(truth.iter().zip(&solutions))),
     };
     Ok(json_or(&report, *json, text)?.into())
 }

@@ -8,7 +8,7 @@ use golden::scene::Kind;
 use tempfile::TempDir;
 
 use crate::support::{PLAIN, only_progress, sptfra, text};
-use simulated::{Body, Recipe, record, sensor as sensor_of_tests};
+use simulated::{Indenter, Recipe, record, sensor as sensor_of_tests};
 
 #[allow(dead_code, reason = "shared with the tests of the solver, which use all of it")]
 #[path = "../../../golden/tests/suite/recorded/simulated.rs"]
@@ -29,7 +29,7 @@ fn from_recordings_to_a_design() {
         noise: 2.0,
         places: 10,
         frames: 2,
-        ..Recipe::new(81, Body::Ball)
+        ..Recipe::new(81, Indenter::Ball)
     };
     let recording = record(&recipe);
     write_frames(&frames, &recording.frames).unwrap();

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use golden::bodies::Body;
+use golden::contacts::ContactForces;
 use golden::design::Design;
 use golden::forces::{columns, read_contacts};
 
@@ -16,7 +16,7 @@ fn done(folder: &Path, arguments: &[&str]) -> Output {
     output
 }
 
-/// A folder with a design for three bodies, calibrated, and the frame of two without what is wrong with the sensor.
+/// A folder with a design for three contacts, calibrated, and the frame of two without what is wrong with the sensor.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let text = fs::read_to_string(workspace("designs/sensor1-fast.toml")).unwrap();
@@ -35,36 +35,40 @@ fn folder() -> tempfile::TempDir {
 }
 
 #[test]
-fn the_forces_of_each_body_are_told_and_judged() {
+fn the_forces_of_each_contact_are_told_and_judged() {
     let folder = folder();
     let here = folder.path();
     done(here, &["scene", "two.toml", "--out", "f.csv"]);
     let truth = fs::read_to_string(here.join("f.forces.csv")).unwrap();
     let header = columns(2, 0).join(",");
-    let of = |body: usize| {
+    let of = |contact: usize| {
         let names = ["taxels", "status", "x (m)", "y (m)", "F_x (N)", "F_y (N)", "F_z (N)", "mu", "standard_error (N)"];
-        names.map(|name| format!("contact{body}_{name}")).join(",")
+        names.map(|name| format!("contact{contact}_{name}")).join(",")
     };
-    let torque = |body: usize| ["x", "y", "z"].map(|axis| format!("contact{body}_T_{axis} (N m)")).join(",");
+    let torque = |contact: usize| ["x", "y", "z"].map(|axis| format!("contact{contact}_T_{axis} (N m)")).join(",");
     assert!(header.ends_with(&[of(1), of(2), torque(1), torque(2)].join(",")), "{header}");
     assert_eq!(truth.lines().next(), Some(header.as_str()));
     let sensor = Design::load(&here.join("pad.toml")).unwrap().sensor;
-    let bodies = read_contacts(&here.join("f.forces.csv"), 6, &sensor).unwrap().unwrap();
+    let contacts = read_contacts(&here.join("f.forces.csv"), 6, &sensor).unwrap().unwrap();
     let close = |found: &[f64], expected: &[f64]| found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12);
-    assert!(close(&bodies[0][0].force, &[0.0, 1.2, -3.0]) && close(&bodies[0][1].force, &[0.0, -1.2, -2.0]));
-    assert!(close(&bodies[0][0].centre_m, &[0.010, 0.006]) && close(&bodies[0][1].centre_m, &[0.027, 0.012]));
+    assert!(close(&contacts[0][0].force, &[0.0, 1.2, -3.0]) && close(&contacts[0][1].force, &[0.0, -1.2, -2.0]));
+    assert!(close(&contacts[0][0].centre_m, &[0.010, 0.006]) && close(&contacts[0][1].centre_m, &[0.027, 0.012]));
 
     // About the middle, 18 and 9 mm from the first taxel: arms of (-8, -3) and (9, 3) mm.
-    assert!(close(&bodies[0][0].torque, &[0.009, -0.024, -0.0096]), "{:?}", bodies[0]);
-    assert!(close(&bodies[0][1].torque, &[-0.006, 0.018, -0.0108]), "{:?}", bodies[0]);
+    assert!(close(&contacts[0][0].torque, &[0.009, -0.024, -0.0096]), "{:?}", contacts[0]);
+    assert!(close(&contacts[0][1].torque, &[-0.006, 0.018, -0.0108]), "{:?}", contacts[0]);
     // A file of before, without them, is read as ever.
     let (mut lines, older) = (truth.lines(), here.join("older.csv"));
     let without = |line: &str| line.split(',').take(31).collect::<Vec<_>>().join(",") + "\n";
     let header = without(lines.next().unwrap());
     fs::write(&older, header + &lines.map(without).collect::<String>()).unwrap();
     let read = read_contacts(&older, 6, &sensor).unwrap().unwrap();
-    let bare = |body: &Body| Body { torque: [0.0; 3], ..*body };
-    assert_eq!(read[0], bodies[0].iter().map(bare).collect::<Vec<_>>());
+    let bare = |contact: &ContactForces| ContactForces { torque: [0.0; 3], ..*contact };
+    assert_eq!(read[0], contacts[0].iter().map(bare).collect::<Vec<_>>());
+    // Contacts of an older version's names would go unread.
+    fs::write(here.join("oldest.csv"), truth.replace("contact1_", "body0_").replace("contact2_", "body1_")).unwrap();
+    let error = read_contacts(&here.join("oldest.csv"), 6, &sensor).unwrap_err().to_string();
+    assert!(["oldest.csv", "body0_taxels", "contact1_taxels"].iter().all(|part| error.contains(part)), "{error}");
 
     let solve = ["solve", "pad.toml", "--frames", "f.csv", "--out", "out.csv"];
     let judged = [&solve[..], &["--reference", "f.forces.csv"]].concat();
@@ -100,11 +104,11 @@ fn the_forces_of_each_body_are_told_and_judged() {
         ["out.npy", "out.csv", "field.csv"].map(|name| read_contacts(&here.join(name), 6, &sensor).unwrap().unwrap());
     assert_eq!(array, text);
     assert_eq!(with_field, text);
-    assert!(text.iter().all(|bodies| bodies.len() == 2), "the third of three records is empty");
+    assert!(text.iter().all(|contacts| contacts.len() == 2), "the third of three records is empty");
 }
 
 #[test]
-fn a_scene_of_one_body_judges_the_only_record() {
+fn a_scene_of_one_contact_judges_the_only_record() {
     let folder = folder();
     let here = folder.path();
     done(here, &["scene", "--design", "pad.toml", "--out", "f.csv"]);

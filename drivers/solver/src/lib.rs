@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::{ptr, slice};
 
-use golden::bodies::MOST;
+use golden::contacts::MOST;
 use golden::design::{Calibration, Design, Samples};
 use golden::solver::{Solution, Solver as Inner, Status, Workspace};
 
@@ -69,8 +69,8 @@ impl From<&Solution> for Forces {
     fn from(solution: &Solution) -> Self {
         let mut forces = Self {
             status: solution.status.0,
-            contacts: solution.bodies as u32,
-            separated: solution.bodies.min(solution.records.len()) as u32,
+            contacts: solution.contacts as u32,
+            separated: solution.contacts.min(solution.records.len()) as u32,
             force: solution.resultant,
             torque: solution.torque,
             friction: solution.mu,

@@ -79,8 +79,8 @@ fn bytes(samples: Samples, frame: &[f64]) -> Vec<u8> {
 
 /// All figures of a solution, in the order in which the C program prints them.
 fn figures(solution: &Solution) -> Vec<f64> {
-    let Solution { status, resultant, torque, mu, phi, mu_x, mu_y, standard_error, bodies, records, .. } = solution;
-    let mut all = vec![f64::from(status.0), *bodies as f64, (*bodies).min(records.len()) as f64];
+    let Solution { status, resultant, torque, mu, phi, mu_x, mu_y, standard_error, contacts, records, .. } = solution;
+    let mut all = vec![f64::from(status.0), *contacts as f64, (*contacts).min(records.len()) as f64];
     all.extend(resultant.iter().chain(torque).chain([mu, phi, mu_x, mu_y, standard_error]));
     for contact in records {
         all.extend([contact.taxels as f64, f64::from(contact.status.0)]);

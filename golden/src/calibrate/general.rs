@@ -16,7 +16,7 @@ const POISSON: [f64; 6] = [0.4655, 0.475, 0.48, 0.485, 0.49, 0.495];
 const DEPTH: f64 = 0.05;
 /// Largest standard deviation of the taxels' gains.
 const GAIN_SPREAD: f64 = 0.02;
-/// Largest sides of a taxel, in pitches, and the share of bodies that are read by such ones.
+/// Largest sides of a taxel, in pitches, and the share of contacts that are read by such ones.
 const TAXEL: f64 = 0.8;
 const AVERAGED: f64 = 0.5;
 /// Largest length over width.
@@ -27,23 +27,23 @@ const EDGES: [f64; 2] = [-0.45, 2.0];
 const TILT: f64 = 0.65;
 /// Largest speed of turning over that of sliding.
 const SPIN: f64 = 1.5;
-/// Share of bodies that lie anywhere over the grid, so that part of them is beyond it; the others lie within it.
+/// Share of contacts that lie anywhere over the grid, so that part of them is beyond it; the others lie within it.
 const ANYWHERE: f64 = 0.25;
-/// One frame in this many has two bodies.
+/// One frame in this many has two contacts.
 const PAIRED: usize = 12;
 
-/// A body that presses with 1 N.
-pub(super) struct Body {
+/// A contact that presses with 1 N.
+pub(super) struct UnitContact {
     /// Stress without friction.
     normal: Vec<f64>,
-    /// What a friction of 1 adds, in the direction of this body.
+    /// What a friction of 1 adds, in the direction of this contact.
     tangential: Vec<f64>,
     /// Force along x and y of a friction of 1.
     push: [f64; 2],
 }
 
-impl Body {
-    /// A body at random.
+impl UnitContact {
+    /// A contact at random.
     pub(super) fn random(sensor: &Sensor, random: &mut ChaCha8Rng) -> Self {
         let poisson = POISSON[random.random_range(0..POISSON.len())];
         let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
@@ -95,25 +95,25 @@ impl Body {
     }
 }
 
-/// What a body, or two, give at random; nothing if that has no answer.
+/// What a contact, or two, give at random; nothing if that has no answer.
 pub(super) fn sample(
-    bodies: &[Body],
+    contacts: &[UnitContact],
     index: usize,
     observer: &mut Observer<'_>,
     random: &mut ChaCha8Rng,
 ) -> Result<Option<Sample>, CalibrateError> {
-    let one = &bodies[index % bodies.len()];
-    let other = &bodies[random.random_range(0..bodies.len())];
+    let one = &contacts[index % contacts.len()];
+    let other = &contacts[random.random_range(0..contacts.len())];
     let share = if random.random_range(0..PAIRED) == 0 { random.random_range(0.2..0.8) } else { 0.0 };
     let friction = random.random::<f64>();
     let parts = [(one, 1.0 - share, friction), (other, share, friction * random.random_range(0.5..1.0))];
     let (mut frame, mut force) = (vec![0.0; one.normal.len()], [0.0, 0.0, -1.0]);
-    for (body, share, friction) in parts {
-        let stresses = body.normal.iter().zip(&body.tangential);
+    for (contact, share, friction) in parts {
+        let stresses = contact.normal.iter().zip(&contact.tangential);
         for (sum, (normal, tangential)) in frame.iter_mut().zip(stresses) {
             *sum += share * (normal + friction * tangential);
         }
-        force.iter_mut().zip(body.push).for_each(|(sum, push)| *sum += share * friction * push);
+        force.iter_mut().zip(contact.push).for_each(|(sum, push)| *sum += share * friction * push);
     }
     let spread = GAIN_SPREAD * random.random::<f64>();
     for stress in &mut frame {

@@ -4,14 +4,14 @@
 //! before it is calibrated, then a gain, two constants for the friction, and the weights of the correction.
 
 mod contacts;
+mod diagonal;
 mod general;
-mod looks;
 mod observer;
 pub mod recorded;
 mod samples;
 mod standard_error;
 mod train;
-mod twins;
+mod whitening;
 mod work;
 
 pub use contacts::random_contacts;
@@ -61,7 +61,7 @@ impl Settings {
     #[must_use]
     pub fn thorough(self) -> Self {
         let Self { contacts, samples, steps, hidden, .. } = self;
-        // An even number, so that an odd one without a twin stays.
+        // An even number, so that an odd one without a partner stays.
         let spare = hidden.next_multiple_of(2);
         Self { contacts: 4 * contacts, samples: 4 * samples, steps: 4 * steps, spare, hollow: true, ..self }
     }

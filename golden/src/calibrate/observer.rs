@@ -4,7 +4,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::CalibrateError;
 use crate::design::{Design, Sensor, Tension};
-use crate::estimators::joint::{self, JointScratch, Look, TrainingSet};
+use crate::estimators::joint::{self, Features, JointScratch, TrainingSet};
 use crate::products::ByPq;
 use crate::scene::normal;
 use crate::solver::{Solver, Status, Workspace};
@@ -14,7 +14,7 @@ pub(super) struct Sample {
     /// Estimate before the calibration.
     pub(super) mu: [f64; 2],
     /// The contact as the correction sees it.
-    pub(super) look: Look,
+    pub(super) features: Features,
     /// Sums `G_pq` in newtons.
     pub(super) sums: ByPq<f64>,
     /// True resultant in newtons.
@@ -90,8 +90,8 @@ impl<'a> Observer<'a> {
         if found.status.contains(Status::DIRECTION_UNKNOWN) {
             return Ok(None);
         }
-        joint::look(&seen, found.mu, self.design.sensor.columns, self.half_window, 0.0, &mut self.scratch);
+        joint::features(&seen, found.mu, self.design.sensor.columns, self.half_window, 0.0, &mut self.scratch);
         let force = force.map(|component| scale * component);
-        Ok(Some(Sample { mu: found.mu, look: self.scratch.look.clone(), sums: *seen.sums, force }))
+        Ok(Some(Sample { mu: found.mu, features: self.scratch.features.clone(), sums: *seen.sums, force }))
     }
 }

@@ -3,7 +3,7 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::general::{self, Body};
+use super::general::{self, UnitContact};
 use super::observer::{Observer, Sample};
 use super::{CalibrateError, Settings, Stage, random_contacts};
 use crate::design::Tension;
@@ -103,17 +103,17 @@ fn general(
     tick: &mut dyn FnMut(Stage),
 ) -> Result<Vec<Sample>, CalibrateError> {
     let mut random = stream(settings.seed, 0);
-    let bodies: Vec<Body> = (0..settings.contacts)
+    let contacts: Vec<UnitContact> = (0..settings.contacts)
         .map(|_| {
             tick(Stage::Contact);
-            Body::random(observer.sensor(), &mut random)
+            UnitContact::random(observer.sensor(), &mut random)
         })
         .collect();
     let mut random = stream(settings.seed, 1);
     let mut samples = Vec::with_capacity(settings.samples);
     for index in 0..settings.samples {
         tick(Stage::Sample);
-        samples.extend(general::sample(&bodies, index, observer, &mut random)?);
+        samples.extend(general::sample(&contacts, index, observer, &mut random)?);
     }
     Ok(samples)
 }

@@ -4,10 +4,10 @@ use nalgebra::DMatrix;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::looks::Basis;
+use super::diagonal::Diagonal;
 use super::observer::Sample;
-use super::twins::Diagonal;
-use super::{Settings, Stage, twins};
+use super::whitening::Basis;
+use super::{Settings, Stage, diagonal};
 use crate::design::Sensor;
 use crate::estimators::joint::{self, Correction, LARGEST, TrainingSet, WEIGHT_FRACTION, WEIGHT_LIMIT};
 use crate::parity::{CLASSES, butterfly};
@@ -61,8 +61,8 @@ pub(super) fn train(
             .map(|part| part as f32)
         })
         .collect();
-    let basis = Basis::new(samples, half_window, twins::has_diagonal(sensor));
-    let looks = basis.looks(samples);
+    let basis = Basis::new(samples, half_window, diagonal::has_diagonal(sensor));
+    let features = basis.features(samples);
     let soft = (training_set == TrainingSet::General).then_some(SOFT);
     let mut random = ChaCha8Rng::seed_from_u64(settings.seed);
     // Streams 0 and 1 of the seed made the samples.
@@ -73,8 +73,8 @@ pub(super) fn train(
     for step in 1..=settings.steps {
         for column in 0..BATCH {
             let index = random.random_range(0..samples.len());
-            for (batch, looks) in batch.iter_mut().zip(&looks) {
-                batch.set_column(column, &looks.column(index));
+            for (batch, features) in batch.iter_mut().zip(&features) {
+                batch.set_column(column, &features.column(index));
             }
             wanted[(column, 0)] = missing[index][0];
             wanted[(column, 1)] = missing[index][1];
@@ -104,7 +104,7 @@ struct Learner {
     images: [DMatrix<f32>; CLASSES],
     /// Their part odd in x and odd in y.
     odd: [DMatrix<f32>; 2],
-    /// Where the sensor is square, units have twins.
+    /// Where the sensor is square, units have partners.
     diagonal: Option<Diagonal>,
     /// What each unit adds: a running mean of its square.
     added: Vec<f64>,
@@ -123,7 +123,7 @@ impl Learner {
             // A sum of two is longer than either.
             let shorter = std::f32::consts::FRAC_1_SQRT_2;
             diagonal.add(&mut hidden);
-            twins::add_output(&mut output);
+            diagonal::add_output(&mut output);
             hidden.iter_mut().chain([&mut output]).for_each(|weights| *weights *= shorter);
         }
         let zeros = || DMatrix::zeros(units, BATCH);
@@ -138,7 +138,7 @@ impl Learner {
         }
     }
 
-    /// The correction of each sample (rows) in a batch of whitened looks by class.
+    /// The correction of each sample (rows) in a batch of whitened features by class.
     fn correct(&mut self, batch: &[DMatrix<f32>; CLASSES]) -> DMatrix<f32> {
         for ((sums, layer), batch) in self.images.iter_mut().zip(&self.hidden).zip(batch) {
             layer.weights.mul_to(batch, sums);
@@ -197,7 +197,7 @@ impl Learner {
         let mut slopes = [0, 1, 2, 3].map(|class| &self.images[class] * batch[class].transpose());
         if let Some(diagonal) = &self.diagonal {
             diagonal.add(&mut slopes);
-            twins::add_output(&mut slope);
+            diagonal::add_output(&mut slope);
         }
         for (slopes, layer) in slopes.iter().zip(&mut self.hidden) {
             layer.descend(slopes, rate, step);
@@ -205,7 +205,7 @@ impl Learner {
         self.output.descend(&slope, rate, step);
     }
 
-    /// Leaves out those units that add least until so many are left; twins go together.
+    /// Leaves out those units that add least until so many are left; partners go together.
     fn leave_out(&mut self, left: usize) {
         let units = self.added.len();
         if units <= left {
@@ -218,7 +218,7 @@ impl Learner {
         }
         let together = if self.diagonal.is_some() { 2 } else { 1 };
         while self.added.len() >= left + together {
-            let pairs = self.added.chunks_exact(together).map(|twins| twins.iter().sum::<f64>());
+            let pairs = self.added.chunks_exact(together).map(|pair| pair.iter().sum::<f64>());
             let Some((least, _)) = pairs.enumerate().min_by(|(_, one), (_, other)| one.total_cmp(other)) else {
                 return;
             };
@@ -241,7 +241,7 @@ impl Learner {
         let output = [0, 1].map(|_| output.next().unwrap_or_default());
         let mut correction = Correction { half_window, hidden: quantised(&hidden), output };
         if self.diagonal.is_some() {
-            twins::tie(&mut correction);
+            diagonal::tie(&mut correction);
         }
         correction
     }
@@ -318,7 +318,7 @@ mod tests {
     }
 
     fn batch(samples: &[Sample], basis: &Basis) -> [DMatrix<f32>; CLASSES] {
-        basis.looks(samples).map(|looks| looks.resize_horizontally(BATCH, 0.0))
+        basis.features(samples).map(|features| features.resize_horizontally(BATCH, 0.0))
     }
 
     /// What is trained by parity class, whitened, is what the solver makes of the weights.
@@ -329,7 +329,7 @@ mod tests {
         let network = Network::new(&learner.correction(&basis, HALF_WINDOW));
         let mut largest = 0.0_f64;
         for (index, sample) in samples.iter().enumerate() {
-            let wanted = network.correct(&sample.look, &mut NetworkScratch::default());
+            let wanted = network.correct(&sample.features, &mut NetworkScratch::default());
             for (axis, wanted) in wanted.into_iter().enumerate() {
                 largest = largest.max(wanted.abs());
                 // Rounding to steps of 2^-12 is all that is between them.

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use super::count;
-use crate::bodies::{Finder, Found};
+use crate::contacts::{Finder, Found};
 use crate::design::Design;
 use crate::matrices::{Matrices, MatrixName};
 use crate::solver::reading::{Given, Reader, Reading};
@@ -21,7 +21,7 @@ pub(super) fn check(design: &Design, frames: &[&Vec<f64>], matrices: &Matrices) 
         let Ok(Reading::Contact { .. }) = reader.read(Given::Values(frame), &mut b) else { return false };
         let weight: Vec<f64> = (&*inverse * &b).iter().map(|force| (-force).max(0.0)).collect();
         finder.count(&weight, &mut found);
-        found.bodies > 1
+        found.contacts > 1
     };
     let several = frames.iter().filter(several).count();
     (several > 0).then(|| {

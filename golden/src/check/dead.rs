@@ -32,7 +32,7 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: &[Vec<f64>], c
             let pressed = |x: usize, y: usize| frame[y * columns + x] < -least;
             let along = x > 0 && x + 1 < columns && pressed(x - 1, y) && pressed(x + 1, y);
             let across = y > 0 && y + 1 < design.sensor.rows && pressed(x, y - 1) && pressed(x, y + 1);
-            // Between two bodies a taxel that cannot read a pull reads 0 for good.
+            // Between two contacts a taxel that cannot read a pull reads 0 for good.
             if clipped { along && across } else { along || across }
         };
         loaded.iter().any(|frame| beyond(frame, WITHIN))

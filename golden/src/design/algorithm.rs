@@ -55,7 +55,7 @@ pub struct Algorithm {
     pub max_standard_error: f64,
     /// The error of the tangential force by noise, if it was found.
     pub expected_error: Option<ExpectedError>,
-    /// Most contacts that are separated, 1 to [`crate::bodies::MOST`]; with 1 a frame is solved as that of one contact.
+    /// Most contacts that are separated, 1 to [`crate::contacts::MOST`]; with 1 a frame is solved as that of one contact.
     pub contacts: usize,
     /// Whether the contacts of a frame are counted where it is solved as that of one, so that a frame of more says so.
     pub count_contacts: bool,

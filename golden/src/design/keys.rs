@@ -12,7 +12,7 @@ use super::{
     DEFAULT_NOISE, ExpectedError, FilterKind, Hardware, MAX_NOISE, MAX_SIDE, Outputs, PlanKind, Regularisation, Slip,
 };
 use super::{Tension, TrainingSet};
-use crate::bodies;
+use crate::contacts;
 use crate::estimators::{Estimator, StandardError};
 use crate::kernel::Kernel;
 
@@ -210,7 +210,7 @@ pub(super) struct AlgorithmKeys {
     #[schemars(extend("examples" = [[1.0, 0.0]]))]
     pub friction_correction: Option<[f64; 2]>,
     /// Most contacts that software separates. With 1 a frame is solved as that of one contact.
-    #[schemars(range(min = 1, max = bodies::MOST))]
+    #[schemars(range(min = 1, max = contacts::MOST))]
     pub contacts: usize,
     /// Whether contacts are counted, so that a status bit marks a frame of several. In hardware this takes 2 % more LUTs.
     pub count_contacts: bool,

@@ -1,8 +1,8 @@
 //! How far a result is from the truth.
 
-mod bodies;
+mod contacts;
 
-pub use bodies::{BodyErrors, Quantiles, pairs};
+pub use contacts::{ContactErrors, Quantiles, pairs};
 
 use serde::{Deserialize, Serialize};
 

@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_that_only_turns_about_its_middle_leaves_no_trace() {
+    fn a_contact_that_only_turns_about_its_middle_leaves_no_trace() {
         // Torsion of a round contact: k . q is 0 for every wave, whatever the layer.
         let field = Field::new(&sensor(), LAYER, None, FINE);
         let spin = |spin| Traction { shear: Shear::Sliding { spin }, ..Traction::default() };

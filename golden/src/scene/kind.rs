@@ -15,7 +15,7 @@ const FORCE_N: f64 = 3.0;
 /// Poisson's ratio of the layer where the kind has none of its own.
 const POISSON: f64 = 0.49;
 
-/// A kind of contact. One body, of 1.25 to 2.5 pitches in radius, anywhere within the grid and pushed in any direction.
+/// A kind of contact. One contact, of 1.25 to 2.5 pitches in radius, anywhere within the grid and pushed in any direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
@@ -35,7 +35,7 @@ pub enum Kind {
     SoftEdge,
     /// A hard edge.
     HardEdge,
-    /// The body turns while it slides.
+    /// The contact turns while it slides.
     Spinning,
     /// Centred on the grid's edge.
     Border,

@@ -27,7 +27,7 @@ pub use shape::Shape;
 pub use traction::{Shear, Traction};
 pub use transfer::Medium;
 
-use crate::bodies::Body;
+use crate::contacts::ContactForces;
 use crate::design::{DesignError, Sensor};
 pub(crate) use field::Field;
 use spectral::{Resolution, UnitResponses};
@@ -76,7 +76,7 @@ pub struct Contact {
 pub struct Scene {
     /// Geometry of the sensor.
     pub sensor: Sensor,
-    /// The body between surface and taxels.
+    /// The layer between surface and taxels.
     pub medium: Medium,
     /// The contacts; their stresses add up.
     pub contacts: Vec<Contact>,
@@ -103,7 +103,7 @@ pub struct SceneFrame {
     /// Direction of the tangential resultant in radians, `atan2(F_y, F_x)`.
     pub direction: f64,
     /// What each contact does, the one that presses most first; taxels, status and standard error are 0.
-    pub bodies: Vec<Body>,
+    pub contacts: Vec<ContactForces>,
 }
 
 impl Scene {
@@ -231,7 +231,7 @@ impl Scene {
         let mut stress = vec![0.0; self.sensor.taxels()];
         let mut force = [0.0; 3];
         let mut torque = [0.0; 3];
-        let mut bodies = Vec::with_capacity(self.contacts.len());
+        let mut contacts = Vec::with_capacity(self.contacts.len());
         for (contact, response) in self.contacts.iter().zip(responses) {
             let angle = contact.direction_deg + sweep_deg.unwrap_or(0.0);
             let [normal, along_x, along_y] = match response {
@@ -241,7 +241,7 @@ impl Scene {
                     for (sums, parts) in [&mut force, &mut torque].into_iter().zip(exerted) {
                         sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
                     }
-                    bodies.push(self.body(exerted));
+                    contacts.push(self.forces_of(exerted));
                     continue;
                 }
             };
@@ -254,13 +254,13 @@ impl Scene {
             // Spread as its shape says, which is its own mirror image in x and in y, the load acts at its centre.
             let own = [fx, fy, -pressing];
             let own_torque = self.sensor.torque_of(contact.centre_m, own);
-            bodies.push(self.body([own, own_torque]));
+            contacts.push(self.forces_of([own, own_torque]));
             let own = own.into_iter().zip(own_torque);
             for ((sum, moment), (part, arm)) in force.iter_mut().zip(&mut torque).zip(own) {
                 (*sum, *moment) = (*sum + part, *moment + arm);
             }
         }
-        Body::largest_first(&mut bodies);
+        ContactForces::largest_first(&mut contacts);
         SceneFrame {
             label: match sweep_deg {
                 Some(angle) => format!("direction {angle} deg"),
@@ -271,19 +271,19 @@ impl Scene {
             torque,
             friction: force[0].hypot(force[1]) / force[2].abs(),
             direction: force[1].atan2(force[0]),
-            bodies,
+            contacts,
         }
     }
 
     /// What a contact of this force and torque does.
-    fn body(&self, [force, torque]: [[f64; 3]; 2]) -> Body {
+    fn forces_of(&self, [force, torque]: [[f64; 3]; 2]) -> ContactForces {
         let [x, y, z] = force;
-        Body {
-            centre_m: Body::centre_of(&self.sensor, force, torque),
+        ContactForces {
+            centre_m: ContactForces::centre_of(&self.sensor, force, torque),
             force,
             torque,
             mu: x.hypot(y) / z.abs(),
-            ..Body::default()
+            ..ContactForces::default()
         }
     }
 }

@@ -27,7 +27,7 @@ pub struct Traction {
 /// How the tangential force is spread over a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shear {
-    /// It slides: friction times the pressure everywhere, in the direction of the sliding. With `spin` the body turns
+    /// It slides: friction times the pressure everywhere, in the direction of the sliding. With `spin` the contact turns
     /// as well, at the edge that many times as fast as it slides, and the direction differs from place to place.
     Sliding {
         /// Speed of the turning at the largest half extent, over the speed of sliding.
@@ -39,7 +39,7 @@ pub enum Shear {
         /// Tangential force over friction times normal force.
         share: f64,
     },
-    /// The same everywhere, whatever the pressure: a body that is glued on.
+    /// The same everywhere, whatever the pressure: a glued contact.
     Even,
 }
 

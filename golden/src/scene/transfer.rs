@@ -3,7 +3,7 @@
 //! For a wave vector k the normal stress at depth h is `-H_P(kh) p + i H_Q(kh) (k . q / |k|)`, where p presses and q
 //! is the tangential load. The inverse length k and the depth appear only as their product.
 
-/// The elastic body between surface and taxels.
+/// The elastic layer between surface and taxels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Medium {
     /// A half-space; its stress on a plane parallel to the surface does not depend on Poisson's ratio.

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::reading::Given;
 use super::{Slips, Solution, Solver, SolverError, Status};
-use crate::bodies::Body;
+use crate::contacts::ContactForces;
 use crate::smoothing::Average;
 
 /// Frames that one core takes at a time.
@@ -59,12 +59,12 @@ impl Solver {
         )
     }
 
-    /// Decides for frames that follow each other, each given by its status, friction coefficient and records of bodies,
+    /// Decides for frames that follow each other, each given by its status, friction coefficient and records of contacts,
     /// which slip. `slips` says what slipped in the one before, and then in the last one.
     pub fn follow_slips<'a>(
         &self,
         slips: &mut Slips,
-        frames: impl IntoIterator<Item = (&'a mut Status, f64, &'a mut [Body])>,
+        frames: impl IntoIterator<Item = (&'a mut Status, f64, &'a mut [ContactForces])>,
     ) {
         for (status, mu, records) in frames {
             self.note_slip(slips, status, mu, records);

@@ -7,25 +7,25 @@
 //! paper's, with either plan.
 
 mod batch;
-mod bodies;
 pub mod cean;
 pub mod co;
 mod cores;
 pub mod op;
 pub(crate) mod reading;
+mod separate;
 mod slips;
 pub mod we;
 mod workspace;
 
 pub use crate::status::Status;
-pub use bodies::{CHANGE, REACH};
 pub use cores::PIECE;
+pub use separate::{CHANGE, REACH};
 pub use slips::Slips;
 pub use workspace::Workspace;
 
 use std::sync::{Arc, OnceLock};
 
-use crate::bodies::{Body, Finder};
+use crate::contacts::{ContactForces, Finder};
 use crate::design::{Design, Outputs, PlanKind, Slip};
 use crate::estimators::standard_error::Confidence;
 use crate::estimators::{Answer, Friction, FrictionScratch, Seen};
@@ -81,12 +81,12 @@ pub struct Solution {
     pub torque: [f64; 3],
     /// Standard error of `(F_x, F_y)` in newtons; 0 where the estimator has none.
     pub standard_error: f64,
-    /// Number of bodies in touch, 0 without an answer. A design with `contacts = 1` knows of no more than one, but
+    /// Number of contacts in touch, 0 without an answer. A design with `contacts = 1` knows of no more than one, but
     /// for one that counts them.
-    pub bodies: usize,
-    /// The bodies that were told apart, the one that presses most first, then zeros: as many as the design's `contacts`,
+    pub contacts: usize,
+    /// The separated contacts, the one that presses most first, then zeros: as many as the design's `contacts`,
     /// and none with `contacts = 1`.
-    pub records: Vec<Body>,
+    pub records: Vec<ContactForces>,
     /// `sqrt(F_x^2 + F_y^2) / |F_z|`, 0 where `F_z` is 0 (Eq. 29).
     pub mu: f64,
     /// Direction of the tangential resultant, `atan2(F_y, F_x)`, in radians.
@@ -107,7 +107,7 @@ impl Solution {
             resultant: [0.0; 3],
             torque: [0.0; 3],
             standard_error: 0.0,
-            bodies: 0,
+            contacts: 0,
             records: Vec::new(),
             mu: 0.0,
             phi: 0.0,
@@ -132,11 +132,11 @@ impl Solution {
     /// Multiplies all forces by a gain.
     fn scale(&mut self, gain: f64) {
         let resultants = self.resultant.iter_mut().chain(&mut self.torque).chain([&mut self.standard_error]);
-        let of_bodies = self.records.iter_mut().flat_map(|body| {
-            let Body { force, torque, standard_error, .. } = body;
+        let of_contacts = self.records.iter_mut().flat_map(|contact| {
+            let ContactForces { force, torque, standard_error, .. } = contact;
             force.iter_mut().chain(torque).chain([standard_error])
         });
-        self.field.iter_mut().flatten().chain(resultants).chain(of_bodies).for_each(|force| *force *= gain);
+        self.field.iter_mut().flatten().chain(resultants).chain(of_contacts).for_each(|force| *force *= gain);
     }
 
     /// Finds the friction components, and puts them and what follows from them in place.
@@ -150,7 +150,7 @@ impl Solution {
         let [fx, fy, fz, tx, ty, tz] = seen.sums.map(|[g0, g1, g2]| g0 + mu[0] * g1 + mu[1] * g2);
         let resultant = [fx, fy, fz];
         [self.mu_x, self.mu_y] = mu;
-        (self.resultant, self.torque, self.bodies) = (resultant, [tx, ty, tz], 1);
+        (self.resultant, self.torque, self.contacts) = (resultant, [tx, ty, tz], 1);
         if let Some(of) = confidence {
             // Without a direction the error is as much as presses.
             let unknown = status.contains(Status::DIRECTION_UNKNOWN);
@@ -172,7 +172,7 @@ pub struct Solver {
     matrices: Matrices,
     products: Products,
     estimate: Estimate,
-    /// Where bodies are told apart, or counted.
+    /// Where contacts are separated, or counted.
     finder: Option<Finder>,
     /// Whether solutions have the forces of all taxels.
     keeps_field: bool,
@@ -313,7 +313,7 @@ impl Solver {
         frames.into_iter().map(&mut solve).collect()
     }
 
-    /// Records of bodies in each solution: the design's `contacts`, or 0 where that is 1.
+    /// Records of contacts in each solution: the design's `contacts`, or 0 where that is 1.
     pub fn records(&self) -> usize {
         self.finder.as_ref().map_or(0, Finder::records)
     }
@@ -324,7 +324,7 @@ impl Solver {
         if self.keeps_field { self.solved_length() } else { 0 }
     }
 
-    /// The same while a frame is solved: several bodies are parted by their field, whatever the design asks for.
+    /// The same while a frame is solved: several contacts are separated by their field, whatever the design asks for.
     fn solved_length(&self) -> usize {
         match &self.products {
             Products::Reduced(reduced) if !reduced.engine.list.has_forces() => 0,

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::batch::{self, BatchFrame};
-use super::bodies::{Census, Parted};
 use super::reading::{Given, Reading};
+use super::separate::{Counted, Separation};
 use super::{Estimate, Paper, Products, Reduced, Slips, Solution, Solver, SolverError, Status};
 use crate::estimators::{Contact, FrictionScratch, Seen};
 use crate::parity::{CLASSES, Quads};
@@ -24,8 +24,8 @@ pub struct Workspace {
     pub(super) b: DVector<f64>,
     friction: FrictionScratch,
     products: Scratch,
-    /// The bodies of the frame.
-    pub(super) parted: Parted,
+    /// The contacts of the frame.
+    pub(super) separation: Separation,
     /// What slipped in the last frame.
     slips: Slips,
     /// Average of the frames solved, in a design with smoothing.
@@ -74,7 +74,7 @@ impl Solver {
                 Products::Paper(paper) => Scratch::Paper(Box::new(paper.engine.frame())),
                 Products::Reduced(reduced) => Scratch::Reduced(Box::new(reduced.engine.frame())),
             },
-            parted: Parted::default(),
+            separation: Separation::default(),
             slips: Slips::default(),
             average: Average::default(),
             batches: Batches::default(),
@@ -104,30 +104,30 @@ impl Solver {
     }
 
     fn solve_reading(&self, workspace: &mut Workspace, reading: &Reading, solution: &mut Solution) {
-        let mut census = Census::default();
+        let mut counted = Counted::default();
         match *reading {
             Reading::Nothing(status) => solution.reset(status, self.field_length()),
             Reading::Contact { contact, status } => {
                 solution.reset(status, self.solved_length());
                 self.solve_alone(workspace, contact, solution);
-                census = self.tell_apart(workspace, status, solution);
+                counted = self.separate(workspace, status, solution);
             }
         }
-        self.finish(workspace, census, solution);
+        self.finish(workspace, counted, solution);
     }
 
-    /// Finds the bodies of the workspace's stress, solved as that of one; where there are several, solves them.
-    fn tell_apart(&self, workspace: &mut Workspace, status: Status, solution: &mut Solution) -> Census {
-        let census = self.part(&workspace.b, &mut workspace.parted);
-        if census.has_several() {
-            self.solve_bodies(workspace, status, solution);
+    /// Finds the contacts of the workspace's stress, solved as that of one; where there are several, solves them.
+    fn separate(&self, workspace: &mut Workspace, status: Status, solution: &mut Solution) -> Counted {
+        let counted = self.count_contacts(&workspace.b, &mut workspace.separation);
+        if counted.has_several() {
+            self.solve_contacts(workspace, status, solution);
         }
-        census
+        counted
     }
 
     /// What follows from the forces of a frame.
-    fn finish(&self, workspace: &mut Workspace, census: Census, solution: &mut Solution) {
-        self.note_body(census, solution);
+    fn finish(&self, workspace: &mut Workspace, counted: Counted, solution: &mut Solution) {
+        self.note_contacts(counted, solution);
         if self.field_length() == 0 {
             solution.field.iter_mut().for_each(Vec::clear);
         }
@@ -137,7 +137,7 @@ impl Solver {
         self.note_slip(&mut workspace.slips, &mut solution.status, solution.mu, &mut solution.records);
     }
 
-    /// Finds the forces of the workspace's stress as those of one body.
+    /// Finds the forces of the workspace's stress as those of one contact.
     pub(super) fn solve_alone(&self, workspace: &mut Workspace, contact: Contact, solution: &mut Solution) {
         let Workspace { b, friction: scratch, products, .. } = workspace;
         let b = b.as_slice();
@@ -267,14 +267,14 @@ impl Solver {
             }
             batch.solve(&self.estimate, &mut workspace.friction, solutions);
             for (&frame, solution) in frames.iter().zip(solutions) {
-                let mut census = Census::default();
+                let mut counted = Counted::default();
                 // Its stress, and its status before it was solved, once more: they are kept of no frame.
                 if self.finder.is_some()
                     && let Reading::Contact { status, .. } = self.reader.read(frame, &mut workspace.b)?
                 {
-                    census = self.tell_apart(workspace, status, solution);
+                    counted = self.separate(workspace, status, solution);
                 }
-                self.finish(workspace, census, solution);
+                self.finish(workspace, counted, solution);
             }
         }
         Ok(())

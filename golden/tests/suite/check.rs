@@ -160,7 +160,7 @@ fn a_curve_is_named_where_it_says_what_a_count_is_worth() {
 #[test]
 fn a_wrong_sign_hides_nothing_else() {
     let mut design = design("sensor2-fast");
-    // Nor does it make bodies out of one.
+    // Nor does it make contacts out of one.
     design.algorithm.count_contacts = true;
     let frames = frames(&design);
     found(&design, &changed(&frames, |pa| -pa), &[Kind::Sign], &["36 of 36 frames", "sensor.pa_per_count = -1.0"]);
@@ -373,7 +373,7 @@ fn the_order_shows_on_contacts_of_every_kind() {
     }
 }
 
-/// Frames at rest are no contact in another unit, in another order, or of several bodies; beside contacts they are nothing.
+/// Frames at rest are no contact in another unit, in another order, or of several contacts; beside contacts they are nothing.
 #[test]
 fn rest_is_told_and_no_contact_is_made_of_it() {
     let mut design = design("sensor1-fast");

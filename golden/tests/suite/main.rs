@@ -1,7 +1,6 @@
 //! Tests of the solver through its public interface, one module a topic.
 
 mod bank;
-mod bodies;
 mod check;
 mod choose;
 mod clipped;
@@ -31,6 +30,7 @@ mod regularisation;
 mod rest;
 mod samples;
 mod scene_file;
+mod separate;
 mod smoothing;
 mod thin;
 mod workspace;

@@ -1,13 +1,13 @@
 //! How many contacts press, in integers: what `sptfra_contact_counter` finds of `|w|`.
 
-use golden::bodies::Labels;
+use golden::contacts::Labels;
 
-/// [`golden::bodies::SHARE`], which is over 64: of the largest `|w|`, above which a taxel touches, and of all `|w|`, from
+/// [`golden::contacts::SHARE`], which is over 64: of the largest `|w|`, above which a taxel touches, and of all `|w|`, from
 /// which on a component is a contact.
 pub(super) const SHARE: i64 = 5;
 pub(super) const SHARE_OF: i64 = 64;
 
-const _: () = assert!((golden::bodies::SHARE * SHARE_OF as f64) as i64 == SHARE);
+const _: () = assert!((golden::contacts::SHARE * SHARE_OF as f64) as i64 == SHARE);
 
 /// Contacts by the steps of each taxel's `|w|` on a grid of `columns`: components of touching taxels that have a share of
 /// all, and one where none has.
@@ -17,9 +17,9 @@ pub fn count(weight: &[i64], columns: usize) -> u32 {
     let mut labels = Labels::default();
     labels.find(&touched, columns);
     let mut sums = vec![0; labels.count];
-    for (&blob, &weight) in labels.blobs.iter().zip(weight) {
-        if let Some(blob) = blob {
-            sums[blob] += weight;
+    for (&component, &weight) in labels.components.iter().zip(weight) {
+        if let Some(component) = component {
+            sums[component] += weight;
         }
     }
     let all: i64 = weight.iter().sum();

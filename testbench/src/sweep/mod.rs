@@ -146,7 +146,7 @@ pub struct SweepScene {
     pub text: String,
     /// The sensor.
     pub sensor: Sensor,
-    /// The bodies that each frame has; none where each has a single one of its own.
+    /// The contacts that each frame has; none where each has a single one of its own.
     pub contacts: Vec<Contact>,
     /// The frames with their true forces.
     pub made: Vec<SceneFrame>,
@@ -155,13 +155,13 @@ pub struct SweepScene {
 }
 
 impl SweepScene {
-    /// Whether the sum of forces tells how well each body was found: of bodies that are pushed against each other most of
-    /// it is gone, and an answer of zero is nearly right. One body is no sum.
+    /// Whether the sum of forces tells how well each contact was found: of contacts that are pushed against each other most of
+    /// it is gone, and an answer of zero is nearly right. One contact is no sum.
     pub fn tells(&self) -> bool {
         let [_, _, ..] = self.contacts.as_slice() else { return true };
-        let push = |body: &Contact| match body.traction.shear {
-            Shear::Held { share } => share * body.friction * body.normal_force_n,
-            _ => body.friction * body.normal_force_n,
+        let push = |contact: &Contact| match contact.traction.shear {
+            Shear::Held { share } => share * contact.friction * contact.normal_force_n,
+            _ => contact.friction * contact.normal_force_n,
         };
         let pushed: f64 = self.contacts.iter().map(push).sum();
         let truth = self.frames.truth.as_deref().unwrap_or_default();
@@ -198,7 +198,7 @@ impl SweepScene {
         Ok(Self { name, text, sensor, contacts, made, frames })
     }
 
-    /// So many frames of each kind of contact, with one body each.
+    /// So many frames of each kind of contact, with one contact each.
     ///
     /// # Errors
     /// [`SceneError`] if they cannot be computed for this geometry.

@@ -93,7 +93,7 @@ fn report(folder: &Path) -> String {
 fn the_report_fits_a_desk_and_a_telephone() {
     let folder = tempfile::tempdir().expect("a folder");
     let page = report(folder.path());
-    // What it concludes, and from what it does not: two bodies that are pushed against each other.
+    // What it concludes, and from what it does not: two contacts that are pushed against each other.
     for (part, times) in [
         ("recommended: no filter", 2),
         ("tells nothing of either", 1),

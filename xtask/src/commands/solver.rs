@@ -185,7 +185,7 @@ mod tests {
             design.algorithm.contacts = contacts;
             let solver = Solver::new(&design).expect("matrices");
             for frame in super::contacts(&design, &solver) {
-                assert_eq!(solver.solve(&frame).expect("a whole frame").bodies, contacts);
+                assert_eq!(solver.solve(&frame).expect("a whole frame").contacts, contacts);
             }
         }
     }

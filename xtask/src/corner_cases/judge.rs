@@ -1,10 +1,10 @@
 //! One case in three arithmetics.
 
-use golden::bodies::Body;
+use golden::contacts::ContactForces;
 use golden::dead_taxels::DeadTaxels;
 use golden::design::{Design, Estimator, Scaling};
 use golden::matrices::Matrices;
-use golden::metrics::{BodyErrors, field_error};
+use golden::metrics::{ContactErrors, field_error};
 use golden::parity::CLASSES;
 use golden::products::{Engine, ProductList};
 use golden::reduced::ReducedMatrices;
@@ -27,7 +27,7 @@ const REASON: f64 = 4.0;
 /// What an arithmetic makes of a case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Judged {
-    /// Largest error of `F_x` and `F_y` against the truth in percent of the normal force; of several bodies see [`of_bodies`].
+    /// Largest error of `F_x` and `F_y` against the truth in percent of the normal force; of several contacts see [`of_contacts`].
     pub tangential: Option<f64>,
     /// The same of `F_z`.
     pub normal: Option<f64>,
@@ -123,8 +123,8 @@ pub fn judge(case: &Case) -> Row {
     let fields = Fields::new(&case.design, &solver);
     let judged = |answers: &[Answer]| judged(case, (&solver, fields.as_ref()), &frames, &reference, answers);
     row.f64 = Some(judged(&reference));
-    let of_bodies = of_bodies(case, &frames);
-    if let (Some(found), Some(errors)) = (&mut row.f64, of_bodies) {
+    let of_contacts = of_contacts(case, &frames);
+    if let (Some(found), Some(errors)) = (&mut row.f64, of_contacts) {
         (found.tangential, found.normal) = (Some(errors.tangential.worst), Some(errors.normal.worst));
     }
     if let Some(single) = Single::new(&case.design, &solver) {
@@ -144,21 +144,21 @@ pub fn judge(case: &Case) -> Row {
     row
 }
 
-/// The design that tells as many bodies apart as a case has, and the true ones, where a case asks for them.
-fn telling_apart(case: &Case) -> Option<(Design, &[Vec<Body>])> {
-    let truth = case.bodies.as_ref()?;
+/// The design that separates as many contacts as a case has, and the true ones, where a case asks for them.
+fn separating(case: &Case) -> Option<(Design, &[Vec<ContactForces>])> {
+    let truth = case.contacts.as_ref()?;
     let mut design = case.design.clone();
     design.algorithm.contacts = truth.iter().map(Vec::len).max()?;
     Some((design, truth))
 }
 
-/// Errors of each body, over its own normal force, by the solver that separates contacts, where a case asks for them. Nothing
-/// if it finds another number of bodies in any frame.
-fn of_bodies(case: &Case, frames: &[Vec<f64>]) -> Option<BodyErrors> {
-    let (design, truth) = telling_apart(case)?;
+/// Errors of each contact, over its own normal force, by the solver that separates contacts, where a case asks for them.
+/// Nothing if it finds another number of contacts in any frame.
+fn of_contacts(case: &Case, frames: &[Vec<f64>]) -> Option<ContactErrors> {
+    let (design, truth) = separating(case)?;
     let solver = Solver::new(&design).ok()?;
     let solutions: Vec<Solution> = frames.iter().filter_map(|frame| solver.solve(frame).ok()).collect();
-    let errors = BodyErrors::new(truth.iter().zip(&solutions));
+    let errors = ContactErrors::new(truth.iter().zip(&solutions));
     (errors.right == frames.len()).then_some(errors)
 }
 
@@ -201,8 +201,8 @@ fn judged(
     reference: &[Answer],
     answers: &[Answer],
 ) -> Judged {
-    // One body is no answer to what each of several does.
-    let truth = case.truth.as_ref().filter(|_| case.bodies.is_none());
+    // One contact is no answer to what each of several does.
+    let truth = case.truth.as_ref().filter(|_| case.contacts.is_none());
     let errors = truth.map(|truth| against_truth(answers, truth));
     let answered = || answers.iter().zip(frames).filter(|(answer, _)| has_field(answer));
     let largest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::max);
@@ -279,9 +279,9 @@ mod tests {
     use crate::corner_cases::cases;
 
     #[test]
-    fn of_opposed_bodies_each_is_judged() {
+    fn of_opposed_contacts_each_is_judged() {
         let cases = cases::all(false).expect("cases");
-        let case = cases.iter().find(|case| case.bodies.is_some()).expect("a case");
+        let case = cases.iter().find(|case| case.contacts.is_some()).expect("a case");
         let row = judge(case);
         let [f64, fixed] = [&row.f64, &row.fixed].map(|judged| judged.as_ref().expect("answers"));
         // The sum of the two is next to nothing, their own forces are not.

@@ -171,7 +171,7 @@ fn samples(
         let [x, y, _] = holds[hold].force.map(Option::unwrap_or_default);
         let force = [x, y, -holds[hold].load];
         if let Some(sample) = observer.sample(frame, force, 0.0, &mut random)? {
-            let added = bare.corrected(sample.mu, &sample.look, &mut scratch);
+            let added = bare.corrected(sample.mu, &sample.features, &mut scratch);
             seen.push(Seen { hold, target: target(&sample, constants.gain), added, sample });
         }
     }

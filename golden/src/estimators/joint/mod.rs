@@ -5,9 +5,9 @@
 //! `docs/explanation/estimators.md` gives the steps as the hardware takes them.
 
 mod constants;
+mod features;
 mod grid;
 mod level_set;
-mod look;
 mod network;
 mod thin;
 mod weights;
@@ -17,11 +17,11 @@ use crate::status::Status;
 pub use constants::{
     CUBIC_LIMIT, Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, TrainingSet, WEIGHT_FRACTION, WEIGHT_LIMIT,
 };
+pub(crate) use features::Features;
+pub use features::{STRESS_SCALE, TIE};
 pub use grid::Grid;
 pub(crate) use level_set::Found;
 use level_set::{GridScratch, search};
-pub(crate) use look::Look;
-pub use look::{STRESS_SCALE, TIE};
 pub(crate) use network::EXTRA_CLASSES;
 pub use network::LARGEST;
 pub(crate) use network::{Network, NetworkScratch};
@@ -38,7 +38,7 @@ pub(crate) struct JointScratch {
     /// Stress of the normal forces at the centroid, in pascals.
     normal: Vec<f64>,
     /// The contact as the correction sees it.
-    pub(crate) look: Look,
+    pub(crate) features: Features,
     network: NetworkScratch,
 }
 
@@ -48,8 +48,8 @@ pub(crate) fn raw(seen: &Seen, scratch: &mut JointScratch) -> Found {
     search(Grid::SEARCH, seen.u, DEAD_ZONE * largest, LEVEL * seen.contact.stress_sum, &mut scratch.grid)
 }
 
-/// Looks at the stress that the normal forces alone would cause at the friction `mu`, in a grid of `columns`.
-pub(crate) fn look(
+/// The features of the stress that the normal forces alone would cause at the friction `mu`, in a grid of `columns`.
+pub(crate) fn features(
     seen: &Seen,
     mu: [f64; 2],
     columns: usize,
@@ -57,11 +57,11 @@ pub(crate) fn look(
     tie: f64,
     scratch: &mut JointScratch,
 ) {
-    let JointScratch { normal, look, .. } = scratch;
+    let JointScratch { normal, features, .. } = scratch;
     let [u0, u1, u2] = seen.u;
     normal.clear();
     normal.extend(u0.iter().zip(u1).zip(u2).map(|((u0, u1), u2)| u0 + u1 * mu[0] + u2 * mu[1]));
-    look.take(normal, columns, half_window, seen.contact.stress_sum, mu, tie);
+    features.take(normal, columns, half_window, seen.contact.stress_sum, mu, tie);
 }
 
 /// The grid search with the constants of one design.
@@ -93,8 +93,8 @@ impl Joint {
         let mu = match &self.network {
             None => scaled(mu, self.friction_correction),
             Some(network) => {
-                look(seen, mu, self.columns, network.half_window, TIE, scratch);
-                self.corrected(mu, &scratch.look, &mut scratch.network)
+                features(seen, mu, self.columns, network.half_window, TIE, scratch);
+                self.corrected(mu, &scratch.features, &mut scratch.network)
             }
         };
         let (status, mu) = within(status, mu);
@@ -102,10 +102,10 @@ impl Joint {
     }
 
     /// The friction components for the centroid of the level set and what the network sees; not clipped.
-    pub(crate) fn corrected(&self, mu: [f64; 2], look: &Look, scratch: &mut NetworkScratch) -> [f64; 2] {
+    pub(crate) fn corrected(&self, mu: [f64; 2], features: &Features, scratch: &mut NetworkScratch) -> [f64; 2] {
         let scaled = scaled(mu, self.friction_correction);
         let Some(network) = &self.network else { return scaled };
-        let added = network.correct(look, scratch);
+        let added = network.correct(features, scratch);
         [scaled[0] + added[0], scaled[1] + added[1]]
     }
 }

@@ -5,7 +5,7 @@
 //! cause, in a window that moves with the contact, and adds a bounded amount to the estimate.
 
 use super::constants::{Correction, WEIGHT_FRACTION};
-use super::look::Look;
+use super::features::Features;
 use crate::parity::{CLASSES, Quads, butterfly};
 
 /// The correction of a component is at most this, so that an unforeseen contact is never made much worse.
@@ -17,12 +17,12 @@ pub(crate) const EXTRA_CLASSES: [usize; 5] = [1, 2, 1, 2, 0];
 
 /// The network: one layer of hinges, then two sums.
 ///
-/// A mirrored look only changes the signs of what is odd in x or y. So window and weights stand in the basis of the parity
+/// Mirrored features only differ in the signs of what is odd in x or y. So window and weights stand in the basis of the parity
 /// classes, and one product gives the hidden units of all four mirror images.
 #[derive(Clone, Debug)]
 pub(crate) struct Network {
     pub(crate) half_window: [usize; 2],
-    /// Members of each quad of the window, each once: index in a look, and the sign's bits.
+    /// Members of each quad of the window, each once: index in the features, and the sign's bits.
     window: Vec<Vec<(usize, usize)>>,
     /// Weights of all hidden units for each word of inputs and class, a word for each quad and one for each other input,
     /// the units next to each other.
@@ -78,7 +78,7 @@ impl Network {
     ///
     /// It is the mean over the mirror images of the contact, mirrored back: a mirrored contact gets the mirrored
     /// correction, exactly.
-    pub(crate) fn correct(&self, look: &Look, scratch: &mut NetworkScratch) -> [f64; 2] {
+    pub(crate) fn correct(&self, features: &Features, scratch: &mut NetworkScratch) -> [f64; 2] {
         let units = self.output[0].len();
         for sums in &mut scratch.sums {
             sums.clear();
@@ -88,14 +88,14 @@ impl Network {
         scratch.inputs.extend(self.window.iter().map(|members| {
             let mut values = [0.0; CLASSES];
             for &(place, member) in members {
-                values[member] = look.values[place];
+                values[member] = features.values[place];
             }
             butterfly(values)
         }));
-        let behind = look.values.len() - EXTRA_CLASSES.len();
+        let behind = features.values.len() - EXTRA_CLASSES.len();
         scratch.inputs.extend(EXTRA_CLASSES.into_iter().enumerate().map(|(offset, of)| {
             let mut values = [0.0; CLASSES];
-            values[of] = look.values[behind + offset];
+            values[of] = features.values[behind + offset];
             values
         }));
         for (weights, inputs) in self.hidden.chunks(TOGETHER).zip(scratch.inputs.chunks(TOGETHER)) {
@@ -144,12 +144,12 @@ mod tests {
     use super::*;
 
     /// One mirror image after the other, as the correction is defined.
-    fn directly(correction: &Correction, look: &Look) -> [f64; 2] {
+    fn directly(correction: &Correction, features: &Features) -> [f64; 2] {
         let weight = |whole: i32| f64::from(whole) * (-f64::from(WEIGHT_FRACTION)).exp2();
         let mut sums = [0.0; 2];
         for signs in [[1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]] {
-            let mut inputs = look.values.clone();
-            look.mirrored(signs, &mut inputs);
+            let mut inputs = features.values.clone();
+            features.mirrored(signs, &mut inputs);
             for (unit, weights) in correction.hidden.iter().enumerate() {
                 let sum: f64 = weights.iter().zip(&inputs).map(|(&of, input)| weight(of) * input).sum();
                 for axis in 0..2 {
@@ -170,7 +170,7 @@ mod tests {
             let hidden = (1..6).map(|unit| numbers(length, 91 * unit)).collect();
             let correction = Correction { half_window, hidden, output: [numbers(5, 3), numbers(5, 8)] };
             let values = numbers(length, 55).into_iter().map(|value| f64::from(value) / 700.0).collect();
-            let seen = Look { half_window, values };
+            let seen = Features { half_window, values };
             let found = Network::new(&correction).correct(&seen, &mut NetworkScratch::default());
             let wanted = directly(&correction, &seen);
             assert!(wanted.iter().all(|sum| sum.abs() > 1e-6), "{wanted:?}");
@@ -181,21 +181,21 @@ mod tests {
     }
 
     #[test]
-    fn a_mirrored_look_has_the_mirrored_correction_and_both_are_bounded() {
+    fn mirrored_features_have_the_mirrored_correction_and_both_are_bounded() {
         let correction = Correction {
             half_window: [1, 0],
             hidden: vec![vec![4096, -2048, 512, 300, 20, -7, 900, 100], vec![-900, 4096, 77, -100, 5, 80, 1, 50]],
             output: [vec![300, -200], vec![150, 60]],
         };
         let network = Network::new(&correction);
-        let correct = |look: &Look| network.correct(look, &mut NetworkScratch::default());
-        let seen = Look { half_window: [1, 0], values: vec![-0.3, 0.9, 0.2, 0.4, -0.1, 0.25, 0.4, 1.0] };
+        let correct = |features: &Features| network.correct(features, &mut NetworkScratch::default());
+        let seen = Features { half_window: [1, 0], values: vec![-0.3, 0.9, 0.2, 0.4, -0.1, 0.25, 0.4, 1.0] };
         let mut mirror = seen.clone();
         seen.mirrored([-1.0, 1.0], &mut mirror.values);
         assert_ne!(seen, mirror);
         let ([x, y], [mirrored_x, mirrored_y]) = (correct(&seen), correct(&mirror));
         assert!(x.abs() > 1e-4 && (x + mirrored_x).abs() < 1e-15 && (y - mirrored_y).abs() < 1e-15);
-        let loud = Look { values: seen.values.iter().map(|value| 1000.0 * value).collect(), ..seen };
+        let loud = Features { values: seen.values.iter().map(|value| 1000.0 * value).collect(), ..seen };
         assert_eq!(correct(&loud)[0].abs().to_bits(), LARGEST.to_bits());
     }
 }

@@ -1,6 +1,6 @@
-//! Torques of single bodies: where a body presses, and how it turns.
+//! Torques of single contacts: where a contact presses, and how it turns.
 
-use golden::bodies::Body;
+use golden::contacts::ContactForces;
 use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneFrame};
 use golden::sensor::Sensor;
@@ -26,7 +26,7 @@ struct Torques {
 
 /// Torque about the axis along z through where the normal force acts.
 fn own(sensor: &Sensor, force: [f64; 3], torque: [f64; 3]) -> ([f64; 2], f64) {
-    let centre = Body::centre_of(sensor, force, torque);
+    let centre = ContactForces::centre_of(sensor, force, torque);
     (centre, torque[2] - sensor.torque_of(centre, force)[2])
 }
 
@@ -56,7 +56,7 @@ fn judge(solver: &Solver, frames: &[SceneFrame]) -> Torques {
     Torques { place, along, beside, about_middle, own, is }
 }
 
-/// Within the grid a body's place is known to a fraction of the pitch, and `T_z` to what the tangential force errs by times
+/// Within the grid a contact's place is known to a fraction of the pitch, and `T_z` to what the tangential force errs by times
 /// its arm.
 #[test]
 fn torques_are_near_the_true_ones_on_every_kind() {

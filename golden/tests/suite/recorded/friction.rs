@@ -4,7 +4,7 @@ use golden::calibrate::recorded::fit_forces;
 use golden::solver::Solver;
 
 use super::says;
-use super::simulated::{self, Body, Recipe, design};
+use super::simulated::{self, Indenter, Recipe, design};
 
 #[test]
 fn tangential_forces_tell_the_constants_of_friction() {
@@ -14,7 +14,7 @@ fn tangential_forces_tell_the_constants_of_friction() {
         frames: 1,
         loads: vec![3.0, 6.0],
         scale: 1.0,
-        ..Recipe::new(78, Body::Disc)
+        ..Recipe::new(78, Indenter::Disc)
     };
     let recording = simulated::record_pascals(&recipe);
     let joint = "estimator = \"joint\"\ngain = 1.1\n";

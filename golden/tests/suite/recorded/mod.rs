@@ -9,7 +9,7 @@ mod table;
 use golden::calibrate::recorded::{Measured, Recorded, fit_forces};
 use golden::design::{Curve, Design};
 use golden::solver::{Solver, Status};
-use simulated::{Body, Recipe, Recording, design, record, weights_only};
+use simulated::{Indenter, Recipe, Recording, design, record, weights_only};
 
 const COUNTS: &str = "pa_per_count = -10.0\ntension = \"clipped\"";
 
@@ -58,8 +58,8 @@ fn study(recipe: &Recipe) -> (Recorded, [f64; 7]) {
     }
     let found = fit_forces(&design(COUNTS, ""), &recording.frames, &recording.measured).unwrap();
     // The same sensor, so the same gains, under other contacts.
-    let body = if recipe.body == Body::Disc { Body::Ball } else { Body::Disc };
-    let others = Recipe { body, places: 16, loads: vec![2.5, 4.5, 6.0], creep: 0.0, repeat: 0.0, ..recipe.clone() };
+    let indenter = if recipe.indenter == Indenter::Disc { Indenter::Ball } else { Indenter::Disc };
+    let others = Recipe { indenter, places: 16, loads: vec![2.5, 4.5, 6.0], creep: 0.0, repeat: 0.0, ..recipe.clone() };
     let others = simulated::record_at(&others, recipe.seed + 1000);
     let [median, most, worst, saturated] = errors(&found.design, &others, recipe.frames);
     let own = found
@@ -83,11 +83,11 @@ fn check(what: &str, recipe: &Recipe, limits: [f64; 4]) -> Recorded {
     found
 }
 
-/// The table of docs/how-to/calibrate-with-weights.md, from seeds and bodies that no choice was made on.
+/// The table of docs/how-to/calibrate-with-weights.md, from seeds and indenters that no choice was made on.
 #[test]
 #[ignore = "two minutes, for the docs"]
 fn figures() {
-    let plain = Recipe { noise: 2.0, ..Recipe::new(0, Body::Ball) };
+    let plain = Recipe { noise: 2.0, ..Recipe::new(0, Indenter::Ball) };
     let kinds = [
         ("straight, gains 10 %", Recipe { scale: 40.0, spread: 0.1, ..plain.clone() }),
         ("power 1.25, gains 10 %", Recipe { power: 1.25, scale: 5.0, spread: 0.1, ..plain.clone() }),
@@ -123,8 +123,8 @@ fn figures() {
     for (what, recipe) in kinds {
         let (mut all, mut told) = (Vec::new(), Vec::new());
         for index in 0..9 {
-            let body = [Body::Ball, Body::Disc, Body::Block][index as usize % 3];
-            let (found, figures) = study(&Recipe { seed: 200 + index, body, ..recipe.clone() });
+            let indenter = [Indenter::Ball, Indenter::Disc, Indenter::Block][index as usize % 3];
+            let (found, figures) = study(&Recipe { seed: 200 + index, indenter, ..recipe.clone() });
             all.push(figures);
             told.push(found.errors.map_or(0.0, |errors| errors.median));
         }
@@ -141,7 +141,7 @@ fn figures() {
 }
 
 fn straight(seed: u64) -> Recipe {
-    Recipe { scale: 40.0, spread: 0.1, noise: 2.0, ..Recipe::new(seed, Body::Block) }
+    Recipe { scale: 40.0, spread: 0.1, noise: 2.0, ..Recipe::new(seed, Indenter::Block) }
 }
 
 #[test]
@@ -152,7 +152,7 @@ fn a_straight_line_and_gains() {
 
 #[test]
 fn a_power_law_above_one() {
-    let recipe = Recipe { power: 1.25, scale: 5.0, noise: 2.0, ..Recipe::new(72, Body::Disc) };
+    let recipe = Recipe { power: 1.25, scale: 5.0, noise: 2.0, ..Recipe::new(72, Indenter::Disc) };
     let found = check("power 1.25", &recipe, [3.0, 3.0, 6.0, 8.0]);
     let curve = found.design.input.curve.unwrap();
     let [power, scale] = curve.law.unwrap();
@@ -170,7 +170,7 @@ fn a_root_with_noise_creep_and_offsets() {
         creep: 0.33,
         repeat: 0.1,
         frames: 10,
-        ..Recipe::new(73, Body::Ball)
+        ..Recipe::new(73, Indenter::Ball)
     };
     let found = check("power 0.57, offsets, creep", &recipe, [14.0, 9.0, 30.0, 40.0]);
     assert!(
@@ -183,7 +183,7 @@ fn a_root_with_noise_creep_and_offsets() {
 
 #[test]
 fn a_falling_sensor_and_the_end_of_the_converter() {
-    let mut recording = record(&Recipe { scale: 22.0, noise: 1.0, places: 16, ..Recipe::new(74, Body::Disc) });
+    let mut recording = record(&Recipe { scale: 22.0, noise: 1.0, places: 16, ..Recipe::new(74, Indenter::Disc) });
     recording.frames.iter_mut().flatten().for_each(|count| *count = 4095.0 - *count);
     let found = fit_forces(&design(COUNTS, ""), &recording.frames, &recording.measured).unwrap();
     assert!(found.design.input.pa_per_count.unwrap() > 0.0);
@@ -193,7 +193,7 @@ fn a_falling_sensor_and_the_end_of_the_converter() {
 
 #[test]
 fn a_taxel_stuck_at_the_end_of_the_converter() {
-    let recipe = Recipe { scale: 40.0, noise: 1.0, places: 12, frames: 3, ..Recipe::new(79, Body::Disc) };
+    let recipe = Recipe { scale: 40.0, noise: 1.0, places: 12, frames: 3, ..Recipe::new(79, Indenter::Disc) };
     for end in [0.0, 4095.0] {
         let mut recording = record(&recipe);
         if end == 0.0 {
@@ -220,7 +220,8 @@ fn what_a_recording_cannot_tell_is_not_fitted() {
         weights_only(&mut recording.measured);
         fit_forces(&design(COUNTS, ""), &recording.frames, &recording.measured).unwrap()
     };
-    let curved = Recipe { power: 1.25, scale: 5.0, noise: 2.0, places: 8, frames: 3, ..Recipe::new(75, Body::Ball) };
+    let curved =
+        Recipe { power: 1.25, scale: 5.0, noise: 2.0, places: 8, frames: 3, ..Recipe::new(75, Indenter::Ball) };
     // One weight.
     let found = fit(&Recipe { loads: vec![5.0], ..curved.clone() });
     assert!(found.design.input.curve.is_none() && found.loads.iter().all(|load| (load - 5.0).abs() < 1e-9));
@@ -258,7 +259,7 @@ fn what_a_recording_cannot_tell_is_not_fitted() {
 
 #[test]
 fn forces_of_other_frames_are_refused() {
-    let recording = record(&Recipe { places: 6, frames: 2, scale: 40.0, ..Recipe::new(76, Body::Ball) });
+    let recording = record(&Recipe { places: 6, frames: 2, scale: 40.0, ..Recipe::new(76, Indenter::Ball) });
     let fit = |measured: &Measured| fit_forces(&design(COUNTS, ""), &recording.frames, measured);
     let refused = |change: &dyn Fn(&mut Measured), parts: &[&str]| {
         let mut measured = recording.measured.clone();
@@ -293,7 +294,7 @@ fn forces_of_other_frames_are_refused() {
 /// What the design said of a count is changed by far only with a remark: its sign, its unit, or that of the forces.
 #[test]
 fn another_sign_and_another_unit_are_told() {
-    let recording = record(&Recipe { places: 6, frames: 2, scale: 40.0, ..Recipe::new(76, Body::Ball) });
+    let recording = record(&Recipe { places: 6, frames: 2, scale: 40.0, ..Recipe::new(76, Indenter::Ball) });
     let remarks = |keys: &str| {
         let design = design(&format!("{keys}\ntension = \"clipped\""), "");
         let found = fit_forces(&design, &recording.frames, &recording.measured).unwrap();

@@ -3,11 +3,11 @@
 use golden::calibrate::recorded::{Measured, fit_forces};
 use golden::solver::{Solver, Status};
 
-use super::simulated::{Body, Recipe, Recording, design, record};
+use super::simulated::{Indenter, Recipe, Recording, design, record};
 use super::{COUNTS, says};
 
 fn recording() -> Recording {
-    record(&Recipe { scale: 40.0, noise: 2.0, places: 12, frames: 8, ..Recipe::new(81, Body::Disc) })
+    record(&Recipe { scale: 40.0, noise: 2.0, places: 12, frames: 8, ..Recipe::new(81, Indenter::Disc) })
 }
 
 /// Whatever is wrong with the times of loads, no design comes out for which loaded frames are none.

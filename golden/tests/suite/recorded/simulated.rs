@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 
 /// What is pressed onto the sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Body {
+pub enum Indenter {
     /// Its contact grows with the load, as Hertz says.
     Ball,
     Disc,
@@ -20,7 +20,7 @@ pub enum Body {
 #[derive(Clone, Debug)]
 pub struct Recipe {
     pub seed: u64,
-    pub body: Body,
+    pub indenter: Indenter,
     pub places: usize,
     pub loads: Vec<f64>,
     /// Frames of a hold.
@@ -42,10 +42,10 @@ pub struct Recipe {
 }
 
 impl Recipe {
-    pub fn new(seed: u64, body: Body) -> Self {
+    pub fn new(seed: u64, indenter: Indenter) -> Self {
         Self {
             seed,
-            body,
+            indenter,
             places: 40,
             loads: vec![2.0, 3.5, 5.0, 7.0],
             frames: 6,
@@ -164,10 +164,10 @@ fn contacts(recipe: &Recipe, seed: u64) -> Vec<SceneFrame> {
         let centre_m = [along(6), along(13)];
         let direction_deg = 360.0 * random.random::<f64>();
         for &load in &recipe.loads {
-            let shape = match recipe.body {
-                Body::Ball => Shape::Hertz { semi_axes_m: [4.2e-3 * (load / 4.0).cbrt(); 2] },
-                Body::Disc => Shape::Disc { radius_m: 4.5e-3 },
-                Body::Block => Shape::Rectangle { sides_m: [7e-3, 9e-3] },
+            let shape = match recipe.indenter {
+                Indenter::Ball => Shape::Hertz { semi_axes_m: [4.2e-3 * (load / 4.0).cbrt(); 2] },
+                Indenter::Disc => Shape::Disc { radius_m: 4.5e-3 },
+                Indenter::Block => Shape::Rectangle { sides_m: [7e-3, 9e-3] },
             };
             let contact = Contact {
                 shape,

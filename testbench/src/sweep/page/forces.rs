@@ -1,8 +1,8 @@
 //! What is found of a scene's forces: the field of a frame beside the true one, and how well its contacts are separated.
 
-use golden::bodies::MOST;
+use golden::contacts::MOST;
 use golden::design::{Design, Estimator, Input, Outputs};
-use golden::metrics::BodyErrors;
+use golden::metrics::ContactErrors;
 use golden::scene::SceneFrame;
 use golden::solver::Solver;
 use hdl_gen::plan::Plan;
@@ -95,12 +95,12 @@ pub fn contacts(designs: &[&Design], scene: &SweepScene) -> Option<String> {
     let solver = Solver::new(&design).ok()?;
     let solve = |frame: &SceneFrame| solver.solve(&frame.stress);
     let solutions: Vec<_> = scene.made.iter().map(solve).collect::<Result<_, _>>().ok()?;
-    let errors = BodyErrors::new(scene.made.iter().map(|frame| &frame.bodies).zip(&solutions));
+    let errors = ContactErrors::new(scene.made.iter().map(|frame| &frame.contacts).zip(&solutions));
     Some(format!(". Separated in f64, by {} with contacts = {contacts}: {}", design.name, figures(&errors)))
 }
 
 /// How many frames have the right number, and the errors of their contacts.
-fn figures(errors: &BodyErrors) -> String {
+fn figures(errors: &ContactErrors) -> String {
     let number = format!("number right in {} of {} frames", errors.right, errors.frames);
     let own = match errors.right {
         0 => String::new(),

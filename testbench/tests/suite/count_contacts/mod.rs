@@ -1,7 +1,7 @@
 //! Contacts counted in hardware: the module by itself, whole designs against the model, the model against the solver.
 
 #[allow(dead_code, reason = "shared with the tests of the solver, which use all of it")]
-#[path = "../../../../golden/tests/suite/bodies/kinds.rs"]
+#[path = "../../../../golden/tests/suite/separate/kinds.rs"]
 pub mod kinds;
 mod module;
 
@@ -177,9 +177,9 @@ fn agreement(plan: &Plan, solver: &Solver, kind: Kind, frames: u64, seed: u64) -
     let mut counts = [0; 3];
     for (answer, scene) in model_answers(plan, &packets).iter().zip(&scenes) {
         let found = solver.solve(&scene.stress).expect("a whole frame");
-        assert_eq!(found.status.contains(Status::SEVERAL_CONTACTS), found.bodies > 1);
+        assert_eq!(found.status.contains(Status::SEVERAL_CONTACTS), found.contacts > 1);
         let contacts = (answer[words::COUNTERS] & 0xFF) as usize;
-        let told = [contacts == found.bodies, contacts == scene.bodies.len(), contacts > 1];
+        let told = [contacts == found.contacts, contacts == scene.contacts.len(), contacts > 1];
         counts.iter_mut().zip(told).for_each(|(count, told)| *count += usize::from(told));
     }
     counts

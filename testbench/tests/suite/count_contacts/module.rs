@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use golden::bodies::{Finder, Found};
+use golden::contacts::{Finder, Found};
 use golden::parity::Quads;
 use golden::sensor::Sensor;
 use hdl_gen::model::contacts::count;
@@ -71,7 +71,7 @@ impl Case {
     }
 }
 
-/// Drawings on any grid, then blobs at random: equal weights, and any.
+/// Drawings on any grid, then components at random: equal weights, and any.
 fn fill(case: &mut Case, taxels: usize, random: &mut ChaCha8Rng) {
     let Sensor { columns, rows, .. } = case.sensor;
     let shapes: [fn(usize, usize) -> bool; 9] = [
@@ -101,7 +101,7 @@ fn fill(case: &mut Case, taxels: usize, random: &mut ChaCha8Rng) {
 
 /// Each case in a player of its own: all frames, now with room between them, now two in a hurry.
 #[test]
-fn blobs_are_counted_as_the_model_counts_them() {
+fn components_are_counted_as_the_model_counts_them() {
     let mut random = ChaCha8Rng::seed_from_u64(7);
     let mut cases = [
         // All patterns of 4 by 3 taxels.
@@ -132,7 +132,7 @@ fn blobs_are_counted_as_the_model_counts_them() {
             let expected = count(frame, columns);
             assert_eq!(found, expected, "{}, frame {number}: {frame:?}", case.name);
             finder.count(&frame.iter().map(|&weight| weight as f64).collect::<Vec<_>>(), &mut solver);
-            assert_eq!(expected as usize, solver.bodies.max(1), "{}, frame {number}: {frame:?}", case.name);
+            assert_eq!(expected as usize, solver.contacts.max(1), "{}, frame {number}: {frame:?}", case.name);
             most = most.max(found);
         }
         assert!(most > 2 || case.sensor.taxels() == 4, "{}: {most} at most", case.name);

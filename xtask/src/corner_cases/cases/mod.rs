@@ -1,7 +1,7 @@
 //! What makes an estimator fail: deep sensors, contacts that fit no taxel, frames that are no contact, broken taxels.
 
-use golden::bodies::Body;
 use golden::calibrate::{Settings, calibrate};
+use golden::contacts::ContactForces;
 use golden::design::{Design, DesignError, Estimator, JointConstants, Sensor};
 use golden::metrics::Outcome;
 use golden::scene::{Contact, Kind, Medium, Scene, SensorErrors, Shape, Traction};
@@ -25,8 +25,8 @@ pub struct Case {
     pub frames: Vec<Vec<f64>>,
     /// True forces where there are any.
     pub truth: Option<Vec<Outcome>>,
-    /// Of each frame the true bodies, where errors are to be of each body: their sum may be next to nothing.
-    pub bodies: Option<Vec<Vec<Body>>>,
+    /// Of each frame the true contacts, where errors are to be of each contact: their sum may be next to nothing.
+    pub contacts: Option<Vec<Vec<ContactForces>>>,
 }
 
 /// Designs with constants of the grid search for their sensors, and the names and contents of their weights.
@@ -118,13 +118,13 @@ impl Cases {
         let FrameSet { stress: frames, truth, .. } = FrameSet::of_scene(scene, "")?;
         let design = design(&scene.sensor, algorithm)?;
         let last = self.0.len();
-        self.0.push(Case { group, name: name.into(), design, frames, truth, bodies: None });
+        self.0.push(Case { group, name: name.into(), design, frames, truth, contacts: None });
         Ok(&mut self.0[last])
     }
 
     fn frames(&mut self, group: &'static str, name: &str, frames: Vec<Vec<f64>>) -> Result<(), HardError> {
         let design = design(&sensor_1(), "")?;
-        self.0.push(Case { group, name: name.to_owned(), design, frames, truth: None, bodies: None });
+        self.0.push(Case { group, name: name.to_owned(), design, frames, truth: None, contacts: None });
         Ok(())
     }
 }
@@ -234,7 +234,7 @@ fn contacts(cases: &mut Cases) -> Result<(), HardError> {
     };
     let opposed = swept(vec![apart(9.0, 0.0), apart(27.0, 180.0)]);
     let case = cases.scene("contact", "two contacts, opposed pushes", "count_contacts = true", &opposed)?;
-    case.bodies = Some(opposed.frames()?.into_iter().map(|frame| frame.bodies).collect());
+    case.contacts = Some(opposed.frames()?.into_iter().map(|frame| frame.contacts).collect());
     cases.scene("contact", "µ = 0", "", &swept(vec![Contact { friction: 0.0, ..contact(&sensor, 7.0) }]))?;
     for friction in [0.2, 0.8, 1.5] {
         let name = format!("µ = {friction}");
@@ -251,7 +251,7 @@ fn kinds(cases: &mut Cases) -> Result<(), HardError> {
         let truth = Some(made.iter().map(Outcome::from).collect());
         let frames = made.into_iter().map(|frame| frame.stress).collect();
         let design = design(&sensor, "")?;
-        cases.0.push(Case { group: "kind", name: kind.title().to_owned(), design, frames, truth, bodies: None });
+        cases.0.push(Case { group: "kind", name: kind.title().to_owned(), design, frames, truth, contacts: None });
     }
     Ok(())
 }

@@ -1,8 +1,8 @@
-//! Which body each taxel belongs to: the nearest one.
+//! Which contact each taxel belongs to: the nearest one.
 
 use crate::sensor::Sensor;
 
-/// A taxel without a body yet: farther than any.
+/// A taxel without a contact yet: farther than any.
 const NONE: (u64, usize) = (u64::MAX, usize::MAX);
 
 /// Distances of neighbours on a sensor, in whole micrometres: along x, along y, along the diagonal.
@@ -16,20 +16,20 @@ impl Distances {
     }
 }
 
-/// Gives each taxel of a grid of `columns` to the nearest body; `bodies` has those of the blobs, and then of all taxels.
+/// Gives each taxel of a grid of `columns` to the nearest contact; `contacts` has those of the components, then of all taxels.
 ///
 /// Nearest by steps from neighbour to neighbour, eight of them, each as long as [`Distances`] says: with a square pitch at
 /// most 8 % longer than the straight line. A taxel as near to two goes to that with the lower number, which is the larger
 /// one. Two passes, as hardware would do it: in raster order, where each looks at four neighbours before it, and back.
 pub(super) fn spread(
-    bodies: &mut [Option<usize>],
+    contacts: &mut [Option<usize>],
     columns: usize,
     Distances([x, y, diagonal]): Distances,
     nearest: &mut Vec<(u64, usize)>,
 ) {
     nearest.clear();
-    nearest.extend(bodies.iter().map(|body| body.map_or(NONE, |body| (0, body))));
-    let taxels = bodies.len();
+    nearest.extend(contacts.iter().map(|contact| contact.map_or(NONE, |contact| (0, contact))));
+    let taxels = contacts.len();
     let rows = taxels / columns.max(1);
     // A step back in the raster, and forward.
     for sign in [-1, 1] {
@@ -44,14 +44,14 @@ pub(super) fn spread(
                     continue;
                 };
                 if column < columns && row < rows && nearest[row * columns + column] != NONE {
-                    let (distance, body) = nearest[row * columns + column];
-                    nearest[taxel] = nearest[taxel].min((distance + length, body));
+                    let (distance, contact) = nearest[row * columns + column];
+                    nearest[taxel] = nearest[taxel].min((distance + length, contact));
                 }
             }
         }
     }
-    for (body, &nearest) in bodies.iter_mut().zip(nearest.iter()) {
-        *body = (nearest != NONE).then_some(nearest.1);
+    for (contact, &nearest) in contacts.iter_mut().zip(nearest.iter()) {
+        *contact = (nearest != NONE).then_some(nearest.1);
     }
 }
 
@@ -59,14 +59,14 @@ pub(super) fn spread(
 mod tests {
     use super::*;
 
-    /// The regions of a drawing of blobs.
+    /// The regions of a drawing of components.
     fn drawn(rows: &[&str], distances: [u64; 3]) -> Vec<String> {
         let columns = rows[0].len();
         let of = |at: u8| (at != b'.').then(|| usize::from(at - b'a'));
-        let mut bodies: Vec<Option<usize>> = rows.iter().flat_map(|row| row.bytes().map(of)).collect();
-        spread(&mut bodies, columns, Distances(distances), &mut Vec::new());
-        let letter = |body: &Option<usize>| body.map_or('.', |body| char::from(b'a' + body as u8));
-        bodies.chunks(columns).map(|row| row.iter().map(letter).collect()).collect()
+        let mut contacts: Vec<Option<usize>> = rows.iter().flat_map(|row| row.bytes().map(of)).collect();
+        spread(&mut contacts, columns, Distances(distances), &mut Vec::new());
+        let letter = |contact: &Option<usize>| contact.map_or('.', |contact| char::from(b'a' + contact as u8));
+        contacts.chunks(columns).map(|row| row.iter().map(letter).collect()).collect()
     }
 
     const EVEN: [u64; 3] = [2000, 2000, 2828];
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_body_there_is_no_region() {
+    fn without_a_contact_there_is_no_region() {
         assert_eq!(drawn(&["..", ".."], EVEN), ["..", ".."]);
         assert_eq!(drawn(&["..", ".a"], EVEN), ["aa", "aa"]);
     }

@@ -13,12 +13,12 @@ pub fn print_rows(sensor: &str, label: &str, training_set: &str, solvers: &[Solv
     for (quantity, Quantiles { median, most, worst }) in [
         ("\"sum, solved as one\"", one.total),
         ("sum", several.total),
-        ("each", several.bodies.tangential),
-        ("\"each, normal\"", several.bodies.normal),
+        ("each", several.contacts.tangential),
+        ("\"each, normal\"", several.contacts.normal),
     ] {
         // Of no contact there is no error.
         if !median.is_nan() {
-            let right = several.bodies.right;
+            let right = several.contacts.right;
             println!("{},\"{label}\",{training_set},{quantity},{median:.1},{most:.1},{worst:.1},{right}", &sensor[6..]);
         }
     }

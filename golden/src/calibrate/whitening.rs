@@ -1,6 +1,6 @@
 //! What the correction sees of the samples, as its training takes it: by parity class, and whitened.
 //!
-//! A mirrored look only changes the signs of what is odd in x or in y. In the basis of the parity classes one product
+//! Mirrored features only differ in the signs of what is odd in x or in y. In the basis of the parity classes one product
 //! with the weights therefore gives the hidden units of all four mirror images, and the training sees the mean over
 //! them that the solver and the hardware form. The values of neighbouring taxels are nearly the same; descent along
 //! their small differences, which are what tells contacts apart, would take for ever. So each class is whitened: turned
@@ -8,8 +8,8 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
+use super::diagonal::{Diagonal, TRANSPOSED};
 use super::observer::Sample;
-use super::twins::{Diagonal, TRANSPOSED};
 use crate::design::Correction;
 use crate::estimators::joint::EXTRA_CLASSES;
 use crate::parity::{CLASSES, Quads, sign};
@@ -38,7 +38,7 @@ impl Basis {
             let mut covariance = DMatrix::zeros(size, size);
             let mut values = DMatrix::zeros(size, 1);
             for sample in samples {
-                basis.split(class, &sample.look.values, values.as_mut_slice());
+                basis.split(class, &sample.features.values, values.as_mut_slice());
                 covariance.syger(1.0 / samples.len() as f64, &values.column(0), &values.column(0), 1.0);
             }
             covariance.fill_upper_triangle_with_lower_triangle();
@@ -77,17 +77,17 @@ impl Basis {
         }
     }
 
-    /// The whitened looks of all samples by class, a column each.
-    pub(super) fn looks(&self, samples: &[Sample]) -> [DMatrix<f32>; CLASSES] {
+    /// The whitened features of all samples by class, a column each.
+    pub(super) fn features(&self, samples: &[Sample]) -> [DMatrix<f32>; CLASSES] {
         [0, 1, 2, 3].map(|class| {
             let mut values = DMatrix::zeros(self.size(class), 1);
-            let mut looks = DMatrix::zeros(self.size(class), samples.len());
-            for (sample, mut column) in samples.iter().zip(looks.column_iter_mut()) {
-                self.split(class, &sample.look.values, values.as_mut_slice());
+            let mut features = DMatrix::zeros(self.size(class), samples.len());
+            for (sample, mut column) in samples.iter().zip(features.column_iter_mut()) {
+                self.split(class, &sample.features.values, values.as_mut_slice());
                 let whitened = &self.whitening[class] * &values;
                 column.iter_mut().zip(&whitened).for_each(|(into, value)| *into = *value as f32);
             }
-            looks
+            features
         })
     }
 

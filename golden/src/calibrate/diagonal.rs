@@ -1,8 +1,8 @@
 //! The symmetry of a square: on a square grid with a square pitch, x and y may change places.
 //!
-//! The parity classes take care of both mirrors, whatever the weights. For the diagonal mirror each hidden unit has a
-//! twin, which sees what the unit would see of the transposed look and answers along the other axis. The network is then
-//! as symmetric as the grid, and costs nothing more.
+//! The parity classes take care of both mirrors, whatever the weights. For the diagonal mirror weights are tied: each hidden
+//! unit has a partner, whose inputs are transposed and whose output is along the other axis. The network is then as
+//! symmetric as the grid, at no cost.
 
 use nalgebra::DMatrix;
 
@@ -10,7 +10,7 @@ use crate::design::Sensor;
 use crate::estimators::joint::Correction;
 use crate::parity::CLASSES;
 
-/// The class that a parity class is of the transposed look.
+/// The class that a parity class is of the transposed features.
 pub(super) const TRANSPOSED: [usize; CLASSES] = [0, 2, 1, 3];
 
 /// Whether x and y may change places on a sensor.
@@ -19,12 +19,12 @@ pub(super) fn has_diagonal(sensor: &Sensor) -> bool {
     sensor.columns == sensor.rows && x.to_bits() == y.to_bits()
 }
 
-/// The twin of a hidden unit: units stand in pairs, and the last one of an odd number is its own twin.
-pub(super) fn twin(unit: usize, units: usize) -> usize {
+/// The partner of a hidden unit: units stand in pairs, and the last one of an odd number is its own partner.
+pub(super) fn partner(unit: usize, units: usize) -> usize {
     if unit + 1 == units && unit.is_multiple_of(2) { unit } else { unit ^ 1 }
 }
 
-/// Where the inputs of each class go when a look is transposed.
+/// Where the inputs of each class go when the features are transposed.
 #[derive(Clone, Debug)]
 pub(super) struct Diagonal {
     /// Of each input of a class, its place in the class that it goes to.
@@ -36,7 +36,7 @@ impl Diagonal {
         Self { places }
     }
 
-    /// The mean of what is known of each class and of what the transposed looks would say: rows and columns are inputs.
+    /// The mean of what is known of each class and of what the transposed features would say: rows and columns are inputs.
     pub(super) fn symmetrise(&self, of_classes: &mut [DMatrix<f64>; CLASSES]) {
         let before = of_classes.clone();
         for (class, matrix) in of_classes.iter_mut().enumerate() {
@@ -49,14 +49,14 @@ impl Diagonal {
         }
     }
 
-    /// Adds to what belongs to each unit (a row) and input what belongs to its twin's; both are then the same.
+    /// Adds to what belongs to each unit (a row) and input what belongs to its partner's; both are then the same.
     pub(super) fn add(&self, of_classes: &mut [DMatrix<f32>; CLASSES]) {
         let before = of_classes.clone();
         for (class, matrix) in of_classes.iter_mut().enumerate() {
             let (other, units) = (&before[TRANSPOSED[class]], matrix.nrows());
             for (mut column, &place) in matrix.column_iter_mut().zip(&self.places[class]) {
                 for unit in 0..units {
-                    column[unit] += other[(twin(unit, units), place)];
+                    column[unit] += other[(partner(unit, units), place)];
                 }
             }
         }
@@ -68,12 +68,12 @@ pub(super) fn add_output(output: &mut DMatrix<f32>) {
     let (before, units) = (output.clone(), output.nrows());
     for unit in 0..units {
         for axis in 0..2 {
-            output[(unit, axis)] += before[(twin(unit, units), 1 - axis)];
+            output[(unit, axis)] += before[(partner(unit, units), 1 - axis)];
         }
     }
 }
 
-/// Makes twins of whole weights exact: those of the first of a pair count.
+/// Makes partners of whole weights exact: those of the first of a pair count.
 pub(super) fn tie(correction: &mut Correction) {
     let (units, width) = (correction.hidden.len(), 2 * correction.half_window[0] + 1);
     let window = width * width;
@@ -82,7 +82,7 @@ pub(super) fn tie(correction: &mut Correction) {
         places.chain([1, 0, 3, 2, 4].map(|extra| row[window + extra])).collect()
     };
     for unit in 0..units {
-        let other = twin(unit, units);
+        let other = partner(unit, units);
         let mirrored = transposed(&correction.hidden[unit]);
         if other > unit {
             correction.hidden[other] = mirrored;

@@ -1,11 +1,11 @@
-//! Frames with several bodies, of every kind.
+//! Frames with several contacts, of every kind.
 
 use golden::design::Sensor;
 use golden::scene::{Contact, Medium, Scene, SceneFrame, SensorErrors, Shape, Shear, Traction};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// How bodies lie and what they do.
+/// How contacts lie and what they do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// Two, pushed the same way.
@@ -33,13 +33,13 @@ pub enum Kind {
     Wide,
 }
 
-/// Least distance of two bodies, edge to edge, in metres.
+/// Least distance of two contacts, edge to edge, in metres.
 const GAP: f64 = 4e-3;
 
 /// Between the seeds of two attempts.
 const ATTEMPT: u64 = 1_000_000;
 
-/// One frame of a kind, of the first bodies that found room.
+/// One frame of a kind, of the first contacts that found room.
 pub fn frame(sensor: &Sensor, kind: Kind, seed: u64) -> SceneFrame {
     frame_and_scene(sensor, kind, seed).0
 }
@@ -85,9 +85,9 @@ fn try_frame(sensor: &Sensor, kind: Kind, seed: u64) -> Option<(SceneFrame, Scen
             let along = usize::from(last[1] > last[0]);
             radii = vec![between(0.9, 1.1) * pitch; 3];
             let step = 0.5 * (last[along] - 2.0 * radii[0]);
-            for body in 0..3 {
+            for contact in 0..3 {
                 let mut centre = last.map(|far| 0.5 * far + between(-0.5, 0.5) * pitch);
-                centre[along] = radii[0] + f64::from(body) * step;
+                centre[along] = radii[0] + f64::from(contact) * step;
                 centres.push(centre);
             }
         }
@@ -121,16 +121,16 @@ fn try_frame(sensor: &Sensor, kind: Kind, seed: u64) -> Option<(SceneFrame, Scen
         // The radius is the longer half.
         wide.extend(radii.iter().map(|&radius| any(radius, [(); 9].map(|()| between(0.0, 1.0)))));
     }
-    let contacts = (0..count).map(|body| {
-        let round = Shape::Hertz { semi_axes_m: [radii[body]; 2] };
-        let held = kind == Kind::Held && body == 1;
-        let even = Shape::Disc { radius_m: radii[body] };
-        let shape = if held || (seed + body as u64).is_multiple_of(2) { round } else { even };
+    let contacts = (0..count).map(|contact| {
+        let round = Shape::Hertz { semi_axes_m: [radii[contact]; 2] };
+        let held = kind == Kind::Held && contact == 1;
+        let even = Shape::Disc { radius_m: radii[contact] };
+        let shape = if held || (seed + contact as u64).is_multiple_of(2) { round } else { even };
         let shear = if held { Shear::Held { share: 0.5 } } else { Traction::default().shear };
         let traction = Traction { shear, ..Traction::default() };
-        let (shape, traction) = wide.get(body).copied().unwrap_or((shape, traction));
-        let (normal_force_n, friction, direction_deg) = (normal[body], friction[body], directions[body]);
-        Contact { shape, centre_m: centres[body], normal_force_n, friction, traction, direction_deg }
+        let (shape, traction) = wide.get(contact).copied().unwrap_or((shape, traction));
+        let (normal_force_n, friction, direction_deg) = (normal[contact], friction[contact], directions[contact]);
+        Contact { shape, centre_m: centres[contact], normal_force_n, friction, traction, direction_deg }
     });
     let scene = Scene {
         sensor: sensor.clone(),

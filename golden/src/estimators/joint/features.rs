@@ -10,14 +10,14 @@ pub const STRESS_SCALE: f64 = 16.0;
 
 /// What the network sees of a contact.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Look {
+pub(crate) struct Features {
     pub(super) half_window: [usize; 2],
     /// The window row by row, then `mu_x, mu_y`, the centre's distance from the middle of the window in pitches, and 1.
     pub(crate) values: Vec<f64>,
 }
 
-impl Look {
-    /// Looks at the stress `normal` (pascals, taxel order, `columns` to a row) around the centre of its compression.
+impl Features {
+    /// Takes the stress `normal` (pascals, taxel order, `columns` to a row) around the centre of its compression.
     ///
     /// The window is centred at the taxel next to the centroid of the compressed taxels, and is 0 beyond the grid. A
     /// centroid up to `tie` of a pitch from the middle between two taxels belongs to the second one.
@@ -55,7 +55,7 @@ impl Look {
         self.values.extend([mu[0], mu[1], centroid[0] - centre[0], centroid[1] - centre[1], 1.0]);
     }
 
-    /// Writes the look, mirrored where a sign is negative, to `into`, of the same length.
+    /// Writes the features, mirrored where a sign is negative, to `into`, of the same length.
     #[cfg(test)]
     pub(super) fn mirrored(&self, [sign_x, sign_y]: [f64; 2], into: &mut [f64]) {
         let [width, height] = self.half_window.map(|half| 2 * half + 1);
@@ -81,7 +81,7 @@ mod tests {
         // Compression at column 2 of row 0, in a grid of 4 by 3.
         let mut normal = vec![0.0; 12];
         (normal[2], normal[1], normal[3], normal[6]) = (-4.0, -1.0, -1.0, -0.5);
-        let mut seen = Look::default();
+        let mut seen = Features::default();
         seen.take(&normal, 4, [1, 1], 16.0, [0.3, -0.2], 0.0);
         let window = [0.0, 0.0, 0.0, -1.0, -4.0, -1.0, 0.0, -0.5, 0.0];
         assert_eq!(seen.values[..9], window);
