@@ -26,6 +26,7 @@ module harness (
         .stresses   (stresses),
         .ends       (ends),
         .bad_length (bad_length),
+        .averaged   (1'b0),
         .restart    (restart),
         .whole      (whole),
         .scaled     (scaled),

@@ -68,8 +68,8 @@ pub(super) struct SensorKeys {
     pub crosstalk: Option<f64>,
     /// The k of an exponential moving average of each taxel over the frames, with the weight 2^-k. A step of any taxel by more
     /// than 6 standard deviations, `noise` times the frame's largest stress, restarts it. A frame that is short, not finite or
-    /// dropped leaves it as it was. With `scaling = "per_frame"` and few lanes the core answers 4 cycles later. With
-    /// `control = true` a register changes k.
+    /// dropped leaves it as it was. With `scaling = "per_frame"` the core answers 4 cycles later. With `control = true`
+    /// a register changes k.
     #[schemars(range(min = 1, max = 8), extend("examples" = [4]))]
     pub smoothing: Option<u32>,
     /// Pascals of one count, negative where larger counts press. Without this key or `curve`, frames hold pascals.

@@ -121,7 +121,7 @@ module sptfra_bz #(
         if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
             sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
         end
-        if ((SAMPLES != 1) && ((SMOOTHING != 0) || ((REPLACEABLE | CROSSTALK | CALIBRATED) != 0))) begin : gen_check
+        if ((SAMPLES != 1) && ((REPLACEABLE | CROSSTALK | CALIBRATED) != 0)) begin : gen_check
             sptfra_error_samples_go_one_by_one_where_frames_are_corrected_or_calibrated invalid ();
         end
         if ((EXPECTED_STAGES != 0) && (EXPECTED_STAGES != STAGES)) begin : gen_check_stages

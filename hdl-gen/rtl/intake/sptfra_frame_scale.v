@@ -10,8 +10,9 @@
 `default_nettype none
 
 module sptfra_frame_scale #(
-    // Samples of a beat
+    // Samples of a beat, and how many stresses each may come to be: a frame is made of the first or the last of them
     parameter SAMPLES = 1,
+    parameter CANDIDATES = 1,
     // Full scale, in steps of the stress
     parameter signed [26:0] STRESS_BOUND = 27'sd51200000
 ) (
@@ -19,15 +20,16 @@ module sptfra_frame_scale #(
     input  wire reset,
     // Beats
     input  wire beat_valid,
-    input  wire [27*SAMPLES-1:0] stresses,
+    input  wire [27*SAMPLES*CANDIDATES-1:0] stresses,
     input  wire [SAMPLES-1:0] counted, // samples of the frame
     input  wire ends, // the frame ends, with its last beat or after it
     input  wire bad_length,
+    input  wire averaged, // the frame is made of the last candidates: known with whole
     input  wire restart, // nothing of the frame is needed any more
     output reg  whole,
     // The frame's power of two, for one cycle
     output reg  scaled,
-    output reg  [4:0] exponent
+    output wire [4:0] exponent
 );
 
     localparam LEVELS = $clog2(SAMPLES);
@@ -35,56 +37,14 @@ module sptfra_frame_scale #(
     localparam [31:0] BOUND_WIDE = {5'd0, STRESS_BOUND};
     localparam [31:0] BOUND_BITS = $clog2(BOUND_WIDE + 1);
 
-    // ---- The largest magnitude of a beat: a tree of its halves
-    wire [26:0] largest [1:2*SAMPLES-1];
-    genvar node;
-
-    generate
-        for (node = 1; node < 2 * SAMPLES; node = node + 1) begin : gen_nodes
-            reg [26:0] held;
-
-            assign largest[node] = held;
-
-            if (node >= SAMPLES) begin : gen_leaf
-                wire [26:0] stress = stresses[27*(node-SAMPLES) +: 27];
-
-                always @(posedge clock) begin
-                    held <= !counted[node-SAMPLES] ? 27'd0 : stress[26] ? -stress : stress;
-                end
-            end else begin : gen_pair
-                always @(posedge clock) begin
-                    held <= (largest[2*node] > largest[2*node+1]) ? largest[2*node] : largest[2*node+1];
-                end
-            end
-        end
-    endgenerate
-
-    // ---- The largest of the frame, and the power of two
     reg [LEVELS:0] valid;
-    reg [26:0] most;
     reg [SETTLES:1] settles; // index k: k cycles after the end
     reg is_bad;
-    wire [5:0] most_bits; // two cycles behind
-    reg [4:0] guess; // brings the leading bit to that of the full scale
-    reg [26:0] guessed;
     wire [LEVELS+1:0] valid_next = {valid, beat_valid};
     wire [SETTLES+1:1] settles_next = {settles, ends};
 
-    sptfra_leading_bit #(
-        .WIDTH (32)
-    ) leading_bit (
-        .clock (clock),
-        .value ({5'd0, most}),
-        .bits  (most_bits)
-    );
-
     always @(posedge clock) begin
         valid <= valid_next[LEVELS:0];
-        if (valid[LEVELS]) begin
-            most <= (largest[1] > most) ? largest[1] : most;
-        end
-        guess <= BOUND_BITS[4:0] - most_bits[4:0];
-        guessed <= most << guess;
         settles <= settles_next[SETTLES:1];
         if (ends) begin
             is_bad <= bad_length;
@@ -93,10 +53,6 @@ module sptfra_frame_scale #(
             whole <= 1'b1;
         end
         scaled <= settles[SETTLES];
-        if (settles[SETTLES]) begin
-            // What another frame has left where this one is too short is not this one's to scale
-            exponent <= is_bad ? 5'd0 : (guessed > STRESS_BOUND) ? guess - 5'd1 : guess;
-        end
         if (reset) begin
             valid <= {(LEVELS+1){1'b0}};
             settles <= {SETTLES{1'b0}};
@@ -105,12 +61,74 @@ module sptfra_frame_scale #(
         if (reset || restart) begin
             whole <= 1'b0;
         end
-        if (reset || settles[SETTLES]) begin
-            most <= 27'd0;
-        end
     end
 
-    wire _unused = &{1'b0, most_bits, BOUND_BITS, valid_next, settles_next};
+    // ---- The largest magnitude of a beat, then of the frame, and the power of two
+    wire [5*CANDIDATES-1:0] exponents;
+    genvar candidate;
+    genvar sample;
+
+    assign exponent = averaged ? exponents[5*(CANDIDATES-1) +: 5] : exponents[4:0];
+
+    generate
+        for (candidate = 0; candidate < CANDIDATES; candidate = candidate + 1) begin : gen_candidates
+            wire [27*SAMPLES-1:0] magnitudes;
+            wire [26:0] largest;
+            reg [26:0] most;
+            wire [5:0] most_bits; // two cycles behind
+            reg [4:0] guess; // brings the leading bit to that of the full scale
+            reg [26:0] guessed;
+            reg [4:0] found;
+
+            assign exponents[5*candidate +: 5] = found;
+
+            for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_samples
+                wire [26:0] stress = stresses[27*(SAMPLES*candidate+sample) +: 27];
+                reg [26:0] magnitude;
+
+                assign magnitudes[27*sample +: 27] = magnitude;
+
+                always @(posedge clock) begin
+                    magnitude <= !counted[sample] ? 27'd0 : stress[26] ? -stress : stress;
+                end
+            end
+
+            sptfra_largest #(
+                .COUNT (SAMPLES)
+            ) largest_of_beat (
+                .clock   (clock),
+                .numbers (magnitudes),
+                .largest (largest)
+            );
+
+            sptfra_leading_bit #(
+                .WIDTH (32)
+            ) leading_bit (
+                .clock (clock),
+                .value ({5'd0, most}),
+                .bits  (most_bits)
+            );
+
+            always @(posedge clock) begin
+                if (valid[LEVELS]) begin
+                    most <= (largest > most) ? largest : most;
+                end
+                guess <= BOUND_BITS[4:0] - most_bits[4:0];
+                guessed <= most << guess;
+                if (settles[SETTLES]) begin
+                    // What another frame has left where this one is too short is not this one's to scale
+                    found <= is_bad ? 5'd0 : (guessed > STRESS_BOUND) ? guess - 5'd1 : guess;
+                end
+                if (reset || settles[SETTLES]) begin
+                    most <= 27'd0;
+                end
+            end
+
+            wire _unused_bits = &{1'b0, most_bits};
+        end
+    endgenerate
+
+    wire _unused = &{1'b0, BOUND_BITS, valid_next, settles_next};
 
 endmodule
 

@@ -3,8 +3,8 @@
 //
 // Frame writer of Bz: corrects and averages a frame, writes it to the lanes, scaled and folded, and streams it to CeAn.
 //
-// Beat to CeAn: as of sptfra_taxel_stream or sptfra_smoothing. Beat to write: 5 cycles, with SCALED see
-// sptfra_frame_scale; with SMOOTHING the lanes wait for the frame's end. All later by what sptfra_corrections takes.
+// Beat to CeAn: as of sptfra_taxel_stream. Beat to write: 5 cycles, with SCALED see sptfra_frame_scale; with SMOOTHING
+// both wait for the frame's end, see sptfra_smoothing. All later by what sptfra_corrections takes.
 
 `default_nettype none
 
@@ -142,20 +142,19 @@ module sptfra_frame_writer #(
         .replaced       (corrected_replaced)
     );
 
-    // ---- Smoothing, and the way to CeAn taxel by taxel
+    // ---- Smoothing
     localparam CANDIDATES = (SMOOTHING != 0) ? 2 : 1; // stresses, and averages with them
     reg ended; // the frame's last beat is there
     reg [COUNT_WIDTH-1:0] written; // beats that are there
-    wire smoothing_busy, takes, ends, bad_length_now, decided, averaged, over, shown_replaced;
+    wire smoothing_busy, takes, ends, bad_length_now, replaced, settled, averaged, over;
     wire [27*SAMPLES*CANDIDATES-1:0] stresses;
     wire [SAMPLES-1:0] saturated, not_finite;
 
     generate
         if (SMOOTHING != 0) begin : gen_smoothed
-            wire replaced;
-
             sptfra_smoothing #(
                 .TAXELS   (TAXELS),
+                .SAMPLES  (SAMPLES),
                 .FRACTION (SMOOTHING[22:17]),
                 .FACTOR   (SMOOTHING[16:0])
             ) smoothing_of_frames (
@@ -166,51 +165,70 @@ module sptfra_frame_writer #(
                 .in_takes       (corrected_takes),
                 .in_ends        (corrected_ends),
                 .in_bad_length  (corrected_bad_length),
-                .in_stress      (corrected[26:0]),
-                .in_flags       ({corrected_saturated[0], corrected_not_finite[0], corrected_replaced}),
+                .in_stresses    (corrected),
+                .in_flags       ({corrected_saturated, corrected_not_finite, corrected_replaced}),
                 .busy           (smoothing_busy),
                 .out_takes      (takes),
                 .out_ends       (ends),
                 .out_bad_length (bad_length_now),
-                .out_stress     (stresses[26:0]),
-                .out_average    (stresses[27*SAMPLES*CANDIDATES-1 -: 27]),
-                .out_flags      ({saturated[0], not_finite[0], replaced}),
-                .decided        (decided),
+                .out_stresses   (stresses[27*SAMPLES-1:0]),
+                .out_averages   (stresses[27*SAMPLES*CANDIDATES-1 -: 27*SAMPLES]),
+                .out_flags      ({saturated, not_finite, replaced}),
+                .decided        (settled),
                 .averaged       (averaged),
-                .over           (over),
-                .shown_valid    (stress_valid),
-                .shown          (stress),
-                .shown_replaced (shown_replaced),
-                .shown_last     (frame_done)
+                .over           (over)
             );
-
-            wire _unused_replaced = &{1'b0, replaced};
         end else begin : gen_as_they_come
-            assign {takes, ends, bad_length_now, shown_replaced}
+            assign {takes, ends, bad_length_now, replaced}
                 = {corrected_takes, corrected_ends, corrected_bad_length, corrected_replaced};
             assign {stresses, saturated, not_finite} = {corrected, corrected_saturated, corrected_not_finite};
-            assign {smoothing_busy, decided, averaged} = 3'b000;
-
-            sptfra_taxel_stream #(
-                .TAXELS  (TAXELS),
-                .SAMPLES (SAMPLES)
-            ) taxel_stream (
-                .clock        (clock),
-                .reset        (reset),
-                .takes        (takes),
-                .beat         (written),
-                .stresses     (stresses[27*SAMPLES-1:0]),
-                .ends         (ends),
-                .ended        (ended),
-                .restart      (over),
-                .stress_valid (stress_valid),
-                .stress       (stress),
-                .done         (frame_done)
-            );
-
+            assign {smoothing_busy, settled, averaged} = {1'b0, ended, 1'b0};
             wire _unused_smoothing = &{1'b0, smoothing};
         end
     endgenerate
+
+    // ---- To CeAn, taxel by taxel
+    localparam WORD_BITS = 27 * CANDIDATES + 1; // of a taxel: whether it was replaced, its candidates
+    wire [WORD_BITS*SAMPLES-1:0] words;
+    wire [WORD_BITS-1:0] word;
+    wire [STRESS_BITS*SAMPLES*CANDIDATES-1:0] narrow_stresses; // to the lanes
+    genvar sample;
+    genvar candidate;
+
+    assign stress = averaged ? word[27*(CANDIDATES-1) +: 27] : word[26:0];
+
+    generate
+        for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_words
+            assign words[WORD_BITS*(sample+1)-1] = replaced;
+
+            for (candidate = 0; candidate < CANDIDATES; candidate = candidate + 1) begin : gen_candidates
+                wire [26:0] of_sample = stresses[27*(SAMPLES*candidate+sample) +: 27];
+
+                assign words[WORD_BITS*sample+27*candidate +: 27] = of_sample;
+                assign narrow_stresses[STRESS_BITS*(CANDIDATES*sample+candidate) +: STRESS_BITS]
+                    = of_sample[STRESS_BITS-1:0];
+            end
+        end
+    endgenerate
+
+    sptfra_taxel_stream #(
+        .TAXELS  (TAXELS),
+        .SAMPLES (SAMPLES),
+        .KEPT    ((SMOOTHING != 0) ? 1 : 0),
+        .WIDTH   (WORD_BITS)
+    ) taxel_stream (
+        .clock        (clock),
+        .reset        (reset),
+        .takes        (takes),
+        .beat         (written),
+        .stresses     (words),
+        .ends         (ends),
+        .whole        (settled),
+        .restart      (over),
+        .stress_valid (stress_valid),
+        .stress       (word),
+        .done         (frame_done)
+    );
 
     // ---- The frame as it comes
     reg bad_length;
@@ -228,7 +246,7 @@ module sptfra_frame_writer #(
     assign frame_saturated = seen_saturated || (takes && ((saturated & counted) != {SAMPLES{1'b0}}));
     assign frame_not_finite = seen_not_finite || (takes && ((not_finite & counted) != {SAMPLES{1'b0}}));
     assign frame_bad_length = ends ? bad_length_now : bad_length;
-    assign frame_replaced = replaced_before + ((stress_valid && shown_replaced) ? {3'd0, magnitude} : 30'd0);
+    assign frame_replaced = replaced_before + ((stress_valid && word[WORD_BITS-1]) ? {3'd0, magnitude} : 30'd0);
 
     always @(posedge clock) begin
         seen_saturated <= frame_saturated;
@@ -256,41 +274,31 @@ module sptfra_frame_writer #(
         end
     end
 
-    // ---- Scales of the frame and of its average: which is used is known later
-    wire whole; // the lanes may have all of it
-    genvar candidate;
+    // ---- Scale
+    wire whole; // the lanes may have all of the frame
 
     generate
         if (SCALED != 0) begin : gen_scale
-            wire [CANDIDATES-1:0] wholes, found;
-            wire [5*CANDIDATES-1:0] exponents;
-
-            assign whole = wholes[0];
-            assign scaled = found[0];
-            assign exponent = averaged ? exponents[5*(CANDIDATES-1) +: 5] : exponents[4:0];
-
-            for (candidate = 0; candidate < CANDIDATES; candidate = candidate + 1) begin : gen_candidates
-                sptfra_frame_scale #(
-                    .SAMPLES      (SAMPLES),
-                    .STRESS_BOUND (STRESS_BOUND)
-                ) scale (
-                    .clock      (clock),
-                    .reset      (reset),
-                    .beat_valid (takes),
-                    .stresses   (stresses[27*SAMPLES*candidate +: 27*SAMPLES]),
-                    .counted    (counted),
-                    .ends       (ends),
-                    .bad_length (bad_length_now),
-                    .restart    (over),
-                    .whole      (wholes[candidate]),
-                    .scaled     (found[candidate]),
-                    .exponent   (exponents[5*candidate +: 5])
-                );
-            end
-
-            wire _unused_whole = &{1'b0, decided, wholes, found};
+            sptfra_frame_scale #(
+                .SAMPLES      (SAMPLES),
+                .CANDIDATES   (CANDIDATES),
+                .STRESS_BOUND (STRESS_BOUND)
+            ) scale (
+                .clock      (clock),
+                .reset      (reset),
+                .beat_valid (takes),
+                .stresses   (stresses),
+                .counted    (counted),
+                .ends       (ends),
+                .bad_length (bad_length_now),
+                .averaged   (averaged),
+                .restart    (over),
+                .whole      (whole),
+                .scaled     (scaled),
+                .exponent   (exponent)
+            );
         end else begin : gen_full_scale
-            assign whole = (SMOOTHING != 0) ? decided : ended;
+            assign whole = settled;
             assign scaled = 1'b0;
             assign exponent = 5'd0;
             wire _unused_bound = &{1'b0, STRESS_BOUND};
@@ -298,15 +306,7 @@ module sptfra_frame_writer #(
     endgenerate
 
     // ---- To the lanes, quad by quad
-    wire [STRESS_BITS*SAMPLES*CANDIDATES-1:0] narrow_stresses;
     wire frame_written;
-    genvar sample;
-
-    generate
-        for (sample = 0; sample < SAMPLES * CANDIDATES; sample = sample + 1) begin : gen_narrow
-            assign narrow_stresses[STRESS_BITS*sample +: STRESS_BITS] = stresses[27*sample +: STRESS_BITS];
-        end
-    endgenerate
 
     sptfra_fold #(
         .COLUMNS     (COLUMNS),

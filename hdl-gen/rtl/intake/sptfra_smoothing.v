@@ -3,219 +3,234 @@
 //
 // Exponential moving average of each taxel over frames, with the weight 2^-rate; a large step of any taxel restarts it.
 //
-// Latency: 4 cycles from a stress to the stress and its new average. One cycle after the frame's end `decided` says
-// that it is known whether the frame is `averaged` or restarts the average. Then it is read out, a taxel a cycle.
+// Latency: 4 cycles from a beat to its stresses and their new averages. One cycle after the frame's end, later by the
+// logarithm of the samples, `decided` says that it is known whether the frame is `averaged` or restarts the average.
 // Averages are double-buffered: a frame writes the spare bank, and a good frame swaps the banks.
 
 `default_nettype none
 
 module sptfra_smoothing #(
-    // Of a frame
+    // Of a frame, and of a beat: 1, 2, 4 or 8
     parameter TAXELS = 100,
+    parameter SAMPLES = 1,
     // A step beyond FACTOR / 2^FRACTION of the frame's largest stress restarts the average
     parameter FRACTION = 21,
     parameter [16:0] FACTOR = 17'd62915,
     // Derived
-    parameter TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1
+    parameter FLAGS = 2 * SAMPLES + 1
 ) (
     input  wire clock,
     input  wire reset,
     input  wire opens, // a frame begins to come in
     input  wire [3:0] rate, // of frames that begin from now on, 8 at most
-    // Stresses
-    input  wire in_takes, // it is a taxel of the frame
-    input  wire in_ends, // the frame ends, with its last taxel or behind it
+    // Beats of stresses
+    input  wire in_takes, // it is of the frame
+    input  wire in_ends, // the frame ends, with its last beat or behind it
     input  wire in_bad_length,
-    input  wire [26:0] in_stress,
-    input  wire [2:0] in_flags, // clipped, no number, in a dead taxel's place
-    output reg  busy, // from the last stress in to the last one out
-    // The same, each with its average
+    input  wire [27*SAMPLES-1:0] in_stresses,
+    input  wire [FLAGS-1:0] in_flags, // samples that are clipped, that are no numbers; in a dead taxel's place
+    output reg  busy, // from the last beat in to the last one out
+    // The same, each with its averages
     output wire out_takes,
     output wire out_ends,
     output wire out_bad_length,
-    output wire [26:0] out_stress,
-    output wire [26:0] out_average,
-    output wire [2:0] out_flags,
+    output wire [27*SAMPLES-1:0] out_stresses,
+    output wire [27*SAMPLES-1:0] out_averages,
+    output wire [FLAGS-1:0] out_flags,
     // Which of them the frame is made of
     output reg  decided, // until over
     output reg  averaged,
-    input  wire over, // all is made of the frame
-    // The frame
-    output reg  shown_valid,
-    output reg  shown_last,
-    output reg  shown_replaced,
-    output reg  [26:0] shown
+    input  wire over // all is made of the frame
 );
 
-    localparam [31:0] LAST_WIDE = TAXELS - 1;
+    localparam BEATS = (TAXELS + SAMPLES - 1) / SAMPLES;
+    localparam PLACE_WIDTH = (BEATS > 2) ? $clog2(BEATS) : 1;
+    localparam LEVELS = $clog2(SAMPLES); // of the trees that find the largest stress and step
+    localparam SETTLES = 4 + LEVELS;
+    localparam [31:0] LAST_WIDE = BEATS - 1;
+    localparam REST = TAXELS - (BEATS - 1) * SAMPLES; // samples of the last beat
+    localparam [31:0] REST_MASK = (1 << REST) - 1;
 
     // ---- Of the frame
     reg [3:0] rate_held;
-    reg [TAXEL_WIDTH-1:0] place; // of the stress that comes, or is shown
+    reg [PLACE_WIDTH-1:0] place; // of the beat that comes
     reg bank; // of the current average
     reg holds; // a first frame has been averaged
     reg bank_averaged; // the bank's frame was made of averages
     reg is_bad; // so far
     reg is_bad_length;
-    reg shows;
-    reg shows_other; // a bad frame, which stays in the spare bank
-    reg shows_1;
-    reg shows_last_1;
-    reg [4:1] takes;
-    reg [4:1] ends;
-    wire place_last = (place == LAST_WIDE[TAXEL_WIDTH-1:0]);
-
-    // ---- Stage 1: what the average was. It has nine bits more, half a step of the stress is added: cut, it is rounded
-    wire [63:0] kept_1; // replaced, stress, average
-    reg [26:0] stress_1;
-    reg [26:0] magnitude_1;
-    wire signed [36:0] old_1 = bank_averaged ? $signed({kept_1[35], kept_1[35:0]})
-        : $signed({kept_1[62], kept_1[62:36], 9'h100});
-
-    // ---- Stages 2 to 4: what it becomes
-    reg [26:0] stress_2;
-    reg [26:0] stress_3;
-    reg [26:0] stress_4;
-    reg signed [36:0] old_2;
-    reg signed [36:0] old_3;
-    reg signed [36:0] step_2;
-    reg signed [37:0] twice_3;
-    reg signed [35:0] average_4;
-    wire signed [37:0] rounded_3 = twice_3 + 38'sd1;
-    wire signed [36:0] sum_3 = old_3 + rounded_3[37:1];
-    reg [11:0] flags; // of stages 1 to 4
-    reg [4*TAXEL_WIDTH-1:0] places;
-
-    // ---- Largest stress and step, and the limit
-    reg [26:0] most_2;
-    wire [26:0] whole_2 = step_2[36] ? ~step_2[35:9] : step_2[35:9];
-    reg [26:0] whole_3;
-    reg [26:0] most_step_4;
-    wire signed [44:0] product_low_3, product_high_3; // the product is their sum
-    reg [44:0] limit_4;
-    wire restarts_4 = !holds || ({18'd0, most_step_4} > limit_4);
+    reg [SETTLES:1] takes;
+    reg [SETTLES:1] ends;
+    reg [4*FLAGS-1:0] flags; // of stages 1 to 4
+    reg [4*PLACE_WIDTH-1:0] places;
+    wire place_last = (place == LAST_WIDE[PLACE_WIDTH-1:0]);
+    wire [SAMPLES-1:0] counted = place_last ? REST_MASK[SAMPLES-1:0] : {SAMPLES{1'b1}};
+    wire [63*SAMPLES-1:0] kept_1; // stress and average
+    wire [63*SAMPLES-1:0] kept_4;
 
     assign out_takes = takes[4];
     assign out_ends = ends[4];
     assign out_bad_length = is_bad_length;
-    assign out_stress = stress_4;
-    assign out_average = average_4[35:9];
-    assign out_flags = flags[11:9];
+    assign out_flags = flags[4*FLAGS-1 -: FLAGS];
+
+    sptfra_ram #(
+        .WIDTH         (63 * SAMPLES),
+        .DEPTH         (2 << PLACE_WIDTH),
+        .ADDRESS_WIDTH (PLACE_WIDTH + 1)
+    ) averages (
+        .clock         (clock),
+        .write_enable  (takes[4]),
+        .write_address ({!bank, places[4*PLACE_WIDTH-1 -: PLACE_WIDTH]}),
+        .write_data    (kept_4),
+        .read_enable   (1'b1),
+        .read_address  ({bank, place}),
+        .read_data     (kept_1)
+    );
+
+    // ---- Samples
+    wire [27*SAMPLES-1:0] magnitudes_1;
+    wire [27*SAMPLES-1:0] steps_3;
+    genvar sample;
+
+    generate
+        for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_samples
+            // Stage 1: what the average was, with nine bits more and half a step of the stress: cut, it is rounded
+            wire [62:0] word_1 = kept_1[63*sample +: 63];
+            reg [26:0] stress_1;
+            wire signed [36:0] old_1 = bank_averaged ? $signed({word_1[35], word_1[35:0]})
+                : $signed({word_1[62], word_1[62:36], 9'h100});
+            // Stages 2 to 4: what it becomes
+            reg [26:0] stress_2;
+            reg [26:0] stress_3;
+            reg [26:0] stress_4;
+            reg signed [36:0] old_2;
+            reg signed [36:0] old_3;
+            reg signed [36:0] step_2;
+            reg [26:0] whole_3;
+            reg signed [37:0] twice_3;
+            reg signed [35:0] average_4;
+            wire signed [37:0] rounded_3 = twice_3 + 38'sd1;
+            wire signed [36:0] sum_3 = old_3 + rounded_3[37:1];
+
+            assign magnitudes_1[27*sample +: 27] = stress_1[26] ? -stress_1 : stress_1;
+            assign steps_3[27*sample +: 27] = whole_3;
+            assign kept_4[63*sample +: 63] = {stress_4, average_4};
+            assign out_stresses[27*sample +: 27] = stress_4;
+            assign out_averages[27*sample +: 27] = average_4[35:9];
+
+            always @(posedge clock) begin
+                stress_1 <= counted[sample] ? in_stresses[27*sample +: 27] : 27'd0;
+                stress_2 <= stress_1;
+                old_2 <= old_1;
+                step_2 <= $signed({stress_1[26], stress_1, 9'h100}) - old_1;
+                stress_3 <= stress_2;
+                old_3 <= old_2;
+                twice_3 <= $signed({step_2, 1'b0}) >>> rate_held;
+                // A dead taxel's own noise is that of a sum
+                whole_3 <= (!takes[2] || flags[FLAGS]) ? 27'd0 : step_2[36] ? ~step_2[35:9] : step_2[35:9];
+                stress_4 <= stress_3;
+                average_4 <= sum_3[35:0];
+            end
+
+            wire _unused_bits = &{1'b0, rounded_3[0], sum_3[36], step_2[8:0]};
+        end
+    endgenerate
+
+    // ---- Largest stress and step, and the limit
+    wire [26:0] magnitude, step;
+    reg [26:0] most;
+    reg [26:0] most_step;
+    wire signed [44:0] product_low, product_high; // the product is their sum
+    reg [44:0] limit;
+    wire restarts = !holds || ({18'd0, most_step} > limit);
+
+    sptfra_largest #(
+        .COUNT (SAMPLES)
+    ) largest_magnitude (
+        .clock   (clock),
+        .numbers (magnitudes_1),
+        .largest (magnitude)
+    );
+
+    sptfra_largest #(
+        .COUNT (SAMPLES)
+    ) largest_step (
+        .clock   (clock),
+        .numbers (steps_3),
+        .largest (step)
+    );
 
     sptfra_multiply multiplier (
         .clock       (clock),
         .enable      (1'b1),
         .coefficient ({1'b0, FACTOR}),
-        .data        (most_2),
-        .low         (product_low_3),
-        .high        (product_high_3)
-    );
-
-    sptfra_ram #(
-        .WIDTH         (64),
-        .DEPTH         (2 << TAXEL_WIDTH),
-        .ADDRESS_WIDTH (TAXEL_WIDTH + 1)
-    ) averages (
-        .clock         (clock),
-        .write_enable  (takes[4]),
-        .write_address ({!bank, places[4*TAXEL_WIDTH-1 -: TAXEL_WIDTH]}),
-        .write_data    ({flags[9], stress_4, average_4}),
-        .read_enable   (1'b1),
-        .read_address  ({bank ^ shows_other, place}),
-        .read_data     (kept_1)
+        .data        (most),
+        .low         (product_low),
+        .high        (product_high)
     );
 
     always @(posedge clock) begin
         if (opens) begin
             rate_held <= rate;
         end
-        takes <= {takes[3:1], in_takes};
-        ends <= {ends[3:1], in_ends};
-        places <= {places[3*TAXEL_WIDTH-1:0], place};
-        flags <= {flags[8:0], in_flags};
-        if (in_takes || shows) begin
+        takes <= {takes[SETTLES-1:1], in_takes};
+        ends <= {ends[SETTLES-1:1], in_ends};
+        places <= {places[3*PLACE_WIDTH-1:0], place};
+        flags <= {flags[3*FLAGS-1:0], in_flags};
+        if (in_takes) begin
             place <= place + 1'b1;
         end
-        if (in_takes && in_flags[1]) begin
+        if (in_takes && ((in_flags[SAMPLES:1] & counted) != {SAMPLES{1'b0}})) begin
             is_bad <= 1'b1;
         end
         if (in_ends) begin
             busy <= 1'b1;
             is_bad_length <= in_bad_length;
         end
-        if (reset || in_ends || (shows && place_last)) begin
-            place <= {TAXEL_WIDTH{1'b0}};
+        if (reset || in_ends) begin
+            place <= {PLACE_WIDTH{1'b0}};
         end
 
-        stress_1 <= in_stress;
-        magnitude_1 <= in_stress[26] ? -in_stress : in_stress;
-        stress_2 <= stress_1;
-        old_2 <= old_1;
-        step_2 <= $signed({stress_1[26], stress_1, 9'h100}) - old_1;
-        stress_3 <= stress_2;
-        old_3 <= old_2;
-        twice_3 <= $signed({step_2, 1'b0}) >>> rate_held;
-        stress_4 <= stress_3;
-        average_4 <= sum_3[35:0];
-
-        if (takes[1] && (magnitude_1 > most_2)) begin
-            most_2 <= magnitude_1;
+        if (takes[1+LEVELS] && (magnitude > most)) begin
+            most <= magnitude;
         end
-        // A dead taxel's own noise is that of a sum
-        whole_3 <= (takes[2] && !flags[3]) ? whole_2 : 27'd0;
-        if (whole_3 > most_step_4) begin
-            most_step_4 <= whole_3;
+        if (step > most_step) begin
+            most_step <= step;
         end
-        limit_4 <= $unsigned(product_low_3 + product_high_3) >> FRACTION;
+        limit <= $unsigned(product_low + product_high) >> FRACTION;
 
         if (ends[4]) begin
             busy <= 1'b0;
+        end
+        if (ends[SETTLES]) begin
             decided <= 1'b1;
-            averaged <= !restarts_4;
-            shows <= 1'b1;
-            shows_other <= is_bad || is_bad_length;
+            averaged <= !restarts;
             if (!is_bad && !is_bad_length) begin
                 bank <= !bank;
-                bank_averaged <= !restarts_4;
+                bank_averaged <= !restarts;
                 holds <= 1'b1;
             end
         end
-        shows_1 <= shows;
-        shows_last_1 <= shows && place_last;
-        shown_valid <= shows_1;
-        shown_last <= shows_last_1;
-        shown_replaced <= kept_1[63];
-        shown <= averaged ? kept_1[35:9] : kept_1[62:36];
-        if (shows && place_last) begin
-            shows <= 1'b0;
-            shows_other <= 1'b0;
-        end
-        if (reset || ends[4]) begin
-            most_2 <= 27'd0;
-            most_step_4 <= 27'd0;
+        if (reset || ends[SETTLES]) begin
+            most <= 27'd0;
+            most_step <= 27'd0;
             is_bad <= 1'b0;
         end
         if (reset || over) begin
             decided <= 1'b0;
         end
         if (reset) begin
-            takes <= 4'd0;
-            ends <= 4'd0;
+            takes <= {SETTLES{1'b0}};
+            ends <= {SETTLES{1'b0}};
             busy <= 1'b0;
             bank <= 1'b0;
             bank_averaged <= 1'b0;
             holds <= 1'b0;
             averaged <= 1'b0;
-            shows <= 1'b0;
-            shows_other <= 1'b0;
-            shows_1 <= 1'b0;
-            shows_last_1 <= 1'b0;
-            shown_valid <= 1'b0;
-            shown_last <= 1'b0;
         end
     end
 
-    wire _unused = &{1'b0, rounded_3[0], sum_3[36], step_2[8:0], LAST_WIDE};
+    wire _unused = &{1'b0, LAST_WIDE, takes};
 
 endmodule
 

@@ -3,7 +3,8 @@
 //
 // Taxel stream: the beats of a frame as its taxels, one a cycle.
 //
-// A beat of one taxel passes in the same cycle. Of several the frame is kept; a taxel follows its turn by 2 cycles.
+// A beat of one taxel passes in the same cycle. Of several, and with KEPT, the frame is kept; a taxel follows its turn
+// by 2 cycles.
 
 `default_nettype none
 
@@ -11,6 +12,10 @@ module sptfra_taxel_stream #(
     parameter TAXELS = 100,
     // Taxels of a beat: 1, 2, 4 or 8
     parameter SAMPLES = 1,
+    // 1: taxels wait for the whole frame
+    parameter KEPT = 0,
+    // Bits of a taxel
+    parameter WIDTH = 27,
     // Derived
     parameter BEATS = (TAXELS + SAMPLES - 1) / SAMPLES,
     parameter COUNT_WIDTH = $clog2(BEATS + 1)
@@ -19,14 +24,14 @@ module sptfra_taxel_stream #(
     input  wire reset,
     // Beats
     input  wire takes,
-    input  wire [COUNT_WIDTH-1:0] beat, // which it is: as many are there
-    input  wire [27*SAMPLES-1:0] stresses,
+    input  wire [COUNT_WIDTH-1:0] beat, // which it is
+    input  wire [WIDTH*SAMPLES-1:0] stresses,
     input  wire ends, // the frame ends, with its last beat or after it
-    input  wire ended, // that is over
+    input  wire whole, // all taxels may have their turn
     input  wire restart, // with the next frame
     // Taxels
     output wire stress_valid,
-    output wire [26:0] stress,
+    output wire [WIDTH-1:0] stress,
     output wire done // the last one, or the end of a frame that is too short
 );
 
@@ -34,11 +39,11 @@ module sptfra_taxel_stream #(
     wire [31:0] beat_wide = {{(32-COUNT_WIDTH){1'b0}}, beat};
 
     generate
-        if (SAMPLES == 1) begin : gen_at_once
+        if ((SAMPLES == 1) && (KEPT == 0)) begin : gen_at_once
             assign stress_valid = takes;
             assign stress = stresses;
             assign done = ends;
-            wire _unused_state = &{1'b0, clock, reset, ended, restart};
+            wire _unused_state = &{1'b0, clock, reset, whole, restart};
         end else begin : gen_one_by_one
             localparam SAMPLE_WIDTH = $clog2(SAMPLES);
             localparam INDEX_WIDTH = BEAT_WIDTH + SAMPLE_WIDTH;
@@ -50,8 +55,8 @@ module sptfra_taxel_stream #(
             reg [TURN_TO_STRESS:1] shows_last;
             wire last_taxel = (taxel == LAST_WIDE[INDEX_WIDTH-1:0]);
             wire [31:0] beat_needed = {{(32-BEAT_WIDTH){1'b0}}, taxel[SAMPLE_WIDTH +: BEAT_WIDTH]};
-            wire show = (ended || (!last_taxel && (beat_needed < beat_wide))) && !all_shown;
-            wire [26:0] kept;
+            wire show = (whole || ((KEPT == 0) && !last_taxel && (beat_needed < beat_wide))) && !all_shown;
+            wire [WIDTH-1:0] kept;
 
             assign stress_valid = shows[TURN_TO_STRESS];
             assign stress = kept;
@@ -60,7 +65,7 @@ module sptfra_taxel_stream #(
             sptfra_frame_memory #(
                 .SAMPLES (SAMPLES),
                 .BEATS   (BEATS),
-                .WIDTH   (27)
+                .WIDTH   (WIDTH)
             ) frame (
                 .clock          (clock),
                 .write_enable   (takes),

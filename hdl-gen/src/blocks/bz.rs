@@ -101,9 +101,11 @@ pub fn arrival(plan: &Plan) -> Arrival {
     let crosstalk = if plan.crosstalk.is_some() { latency::crosstalk(sensor) } else { 0 };
     let there = |taxel: usize| (taxel / samples) as u64 + beat_to_stress(plan) + dead + crosstalk;
     let last = there(plan.taxels() - 1);
+    // It is decided whether the average restarts.
+    let decided = last + latency::SMOOTHING + latency::smoothing_decided(samples);
     // A taxel a cycle.
     let last_stress = if plan.smoothing.is_some() {
-        last + latency::smoothed_to_cean(plan.taxels())
+        decided + latency::TAXEL_TO_CEAN + plan.taxels() as u64 - 1
     } else if samples == 1 {
         last
     } else {
@@ -116,7 +118,7 @@ pub fn arrival(plan: &Plan) -> Arrival {
     let element = |taxel| match (plan.scales_frames(), &plan.smoothing) {
         (true, Some(_)) => last + latency::SMOOTHING + latency::frame_scale(samples),
         (true, None) => last + latency::frame_scale(samples),
-        (false, Some(_)) => last + latency::SMOOTHING + latency::SMOOTHING_DECIDED,
+        (false, Some(_)) => decided,
         (false, None) => there(taxel) + 1,
     };
     Arrival {
@@ -163,10 +165,12 @@ pub fn cost(plan: &Plan) -> BlockCost {
     let candidates = if plan.smoothing.is_some() { 2 } else { 1 };
     memories.push(memory("frame by elements", plan.ways() * conversions, kept, candidates * stress, false));
     if plan.smoothing.is_some() {
-        memories.push(memory("averages", 1, 2 << address_bits(taxels), smoothing::WORD_BITS, false));
+        let width = conversions as u32 * smoothing::WORD_BITS;
+        memories.push(memory("averages", 1, 2 << address_bits(beats(taxels)), width, false));
     }
-    if conversions > 1 {
-        memories.push(memory("frame by taxels", conversions, beats(taxels), LONG_BITS, false));
+    if conversions > 1 || plan.smoothing.is_some() {
+        let width = candidates * LONG_BITS + u32::from(places > 0);
+        memories.push(memory("frame by taxels", conversions, beats(taxels), width, false));
     }
     let gain = plan.counts.is_some() || plan.calibration.is_some();
     let curve = plan.design.input.curve.is_some();

@@ -17,8 +17,8 @@ const HALF: i64 = 1 << (FRACTION - 1);
 const FACTOR_BITS: u32 = SHORT_BITS - 1;
 /// Bits of [`SmoothingPlan::restart`].
 pub const RESTART_BITS: u32 = 6 + FACTOR_BITS;
-/// Bits of a word of the memory: whether another took the taxel's place, its stress, its average.
-pub const WORD_BITS: u32 = 1 + LONG_BITS + LONG_BITS + FRACTION;
+/// Bits that the memory keeps of a taxel: its stress, its average.
+pub const WORD_BITS: u32 = LONG_BITS + LONG_BITS + FRACTION;
 
 /// How frames are averaged.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

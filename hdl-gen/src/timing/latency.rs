@@ -33,11 +33,10 @@ pub fn crosstalk(sensor: &Sensor) -> u64 {
 
 /// From a stress to the average with it.
 pub const SMOOTHING: u64 = 4;
-/// From a frame's last average to the first element's turn, where no scale takes longer.
-pub const SMOOTHING_DECIDED: u64 = 1;
-/// From the last stress of a frame that is averaged to its last one in `CeAn`: the frame is read once more.
-pub fn smoothed_to_cean(taxels: usize) -> u64 {
-    SMOOTHING + SMOOTHING_DECIDED + TAXEL_TO_CEAN + taxels as u64 - 1
+/// From a frame's last average to the first element's turn, where no scale takes longer: the largest step of a beat is
+/// found by a tree.
+pub fn smoothing_decided(samples: usize) -> u64 {
+    1 + u64::from(samples.ilog2())
 }
 
 /// From an element's turn to its write to the operand memories: two cycles more where stresses are shifted.

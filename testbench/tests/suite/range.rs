@@ -95,7 +95,7 @@ fn frames_of_all_strengths_in_one_row_are_right() {
 fn a_wrong_range_is_noticed() {
     let faults = some_of([
         ("sptfra_frame_scale", "(guessed > STRESS_BOUND)", "(guessed > STRESS_BOUND + 5000000)"),
-        ("sptfra_frame_scale", "!counted[node-SAMPLES] ? 27'd0 : ", ""),
+        ("sptfra_frame_scale", "!counted[sample] ? 27'd0 : ", ""),
         ("sptfra_fold", "exact_4 <= octets_3 << exponent[2:0]", "exact_4 <= octets_3 << exponent[1:0]"),
         ("sptfra_fold", "even_above + even_below + HALF", "even_above + even_below"),
         ("sptfra_frame_context", "(next_direction),", "(oldest),"),

@@ -152,7 +152,11 @@ pub const PROOFS: &[Proof] = &[
         altered: &[],
         broken: &[
             ("frame_scale", "if (settles[SETTLES-2]) begin", "if (settles[SETTLES-3]) begin"),
-            ("frame_scale", "if (settles[SETTLES]) begin\n            // What", "begin\n            // What"),
+            (
+                "frame_scale",
+                "if (settles[SETTLES]) begin\n                    // What",
+                "begin\n                    // What",
+            ),
             ("frame_scale", "if (reset || restart) begin", "if (reset) begin"),
         ],
     },
