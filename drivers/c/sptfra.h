@@ -131,7 +131,8 @@ typedef struct {
 
 int sptfra_count(const sptfra *device, sptfra_counters *counters);
 
-/* Averages frames with the weight 2^-k, 8 at most, from the next frame on; 0 averages nothing. */
+/* Averages frames with the weight 2^-k from the next frame on; 0 averages nothing. k above 8: SPTFRA_OUT_OF_RANGE; a design
+ * without smoothing: SPTFRA_NO_SMOOTHING, without registers: SPTFRA_NO_REGISTERS. */
 int sptfra_set_smoothing(const sptfra *device, uint32_t k);
 
 /* Resets the core without cutting a packet, see docs/reference/registers.md. Frames inside are lost; the packet going out still

@@ -24,9 +24,9 @@ const SEEDS: Range<u64> = 92_000..92_040;
 const BEFORE: u64 = 1_000;
 /// Noise of a reading in percent of the frame's largest.
 const NOISE_PERCENT: f64 = 0.5;
-/// Seconds from frame to frame.
-const STEP: f64 = 0.1;
 const FRAMES_PER_SECOND: usize = 10;
+/// Seconds from frame to frame.
+const STEP: f64 = 1.0 / FRAMES_PER_SECOND as f64;
 /// Frames of the contact before, of the pause behind it, and of the pause behind the tare.
 const HELD: usize = 300;
 const PAUSE: usize = 200;

@@ -88,7 +88,7 @@ fn share(text: &str) -> Result<f64, String> {
     let share = number.trim().parse().ok().map(|number: f64| number / unit);
     share
         .filter(|share| (0.0..=MAX_NOISE).contains(share))
-        .ok_or_else(|| "a share from 0 to 0.1, such as 1% or 0.01".to_owned())
+        .ok_or_else(|| format!("a share from 0 to {MAX_NOISE}, such as 1% or 0.01"))
 }
 
 impl Args {

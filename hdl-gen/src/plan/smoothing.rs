@@ -41,7 +41,7 @@ impl SmoothingPlan {
         let input = &design.input;
         let at = |fraction: u32| (RESTART * input.noise * pow2(fraction as i32)).round() as i64;
         let fits = |&fraction: &u32| at(fraction) <= largest(SHORT_BITS);
-        let fraction = (1..=40).rev().find(fits).unwrap_or(1);
+        let fraction = (1..=40).rev().find(fits)?;
         (input.smoothing > 0).then(|| Self { rate: input.smoothing, factor: at(fraction), fraction })
     }
 

@@ -90,7 +90,7 @@ struct Control<'a> {
     sums_there: VecDeque<u64>,
     line: Line,
     u_there: VecDeque<u64>,
-    stages: Vec<Stage>,
+    stages: Vec<StageState>,
     summary_busy: bool,
     summary_there: Option<u64>,
     friction_known: Option<u64>,
@@ -103,7 +103,7 @@ struct Control<'a> {
 
 /// A stage of the search: when the frame in it is done, and from when on it may begin.
 #[derive(Clone, Copy, Default)]
-struct Stage {
+struct StageState {
     ends: Option<u64>,
     free: u64,
 }
@@ -161,7 +161,7 @@ impl<'a> Control<'a> {
             sums_there: VecDeque::new(),
             line: Line::Idle { from: 0 },
             u_there: VecDeque::new(),
-            stages: vec![Stage::default(); of.stages.len()],
+            stages: vec![StageState::default(); of.stages.len()],
             summary_busy: false,
             summary_there: None,
             friction_known: None,
@@ -404,8 +404,8 @@ impl<'a> Control<'a> {
 
     fn search(&mut self) {
         let now = self.now;
-        let done = |stage: &Stage| stage.ends.is_some_and(|end| end <= now);
-        let may_begin = |stage: &Stage| stage.ends.is_none() && stage.free <= now;
+        let done = |stage: &StageState| stage.ends.is_some_and(|end| end <= now);
+        let may_begin = |stage: &StageState| stage.ends.is_none() && stage.free <= now;
         let last = self.stages.len() - 1;
         if done(&self.stages[last]) && !self.summary_busy {
             self.leave(last);
@@ -440,7 +440,7 @@ impl<'a> Control<'a> {
 
     /// A frame leaves a stage of the search.
     fn leave(&mut self, stage: usize) {
-        self.stages[stage] = Stage { ends: None, free: self.now + self.of.stages[stage].shows + 1 };
+        self.stages[stage] = StageState { ends: None, free: self.now + self.of.stages[stage].shows + 1 };
         if stage == 0 {
             self.pending.push((self.now + 1, Change::Released));
         }
