@@ -231,3 +231,50 @@ fn lines(new: &Args, design: &Design, path: &Path) -> Vec<String> {
     lines.extend(design.thin_layer().map(|thin| format!("warning: {thin}")));
     lines
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+    use golden::design::DEFAULT_NOISE;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Command {
+        #[command(flatten)]
+        new: Args,
+    }
+
+    /// What the options say of the first sensor of the paper, or why they are refused.
+    fn design(options: &[&str]) -> Result<NewDesign, String> {
+        let words = ["new", "pad", "--paper-sensor", "1"].iter().chain(options);
+        Command::try_parse_from(words).map_err(|error| error.to_string())?.new.design()
+    }
+
+    #[test]
+    fn a_pitch_is_one_number_or_two() {
+        for pitch in [&["3.4"][..], &["3.4", "3.4"], &["3.4,3.4"]] {
+            let design = design(&[&["--pitch-mm"], pitch].concat()).unwrap();
+            assert_eq!(design.pitch_mm.map(f64::to_bits), [3.4_f64.to_bits(); 2]);
+        }
+        for (pitch, part) in
+            [(&["4,4,4"][..], "3 lengths; give one or two"), (&["wide"], "as 4 2 or 4,2"), (&["nan"], "nan")]
+        {
+            let Err(said) = design(&[&["--pitch-mm"], pitch].concat()) else { panic!("{pitch:?} is refused") };
+            assert!(said.contains(part), "{said}");
+        }
+    }
+
+    #[test]
+    fn noise_is_a_share_or_percent() {
+        for (noise, expected) in [("1%", 0.01), ("0.01", 0.01), ("2.5 %", 0.025), ("0", 0.0)] {
+            let design = design(&["--noise", noise]).unwrap();
+            assert_eq!(design.noise.to_bits(), f64::to_bits(expected), "{noise}");
+        }
+        assert_eq!(design(&[]).unwrap().noise.to_bits(), DEFAULT_NOISE.to_bits());
+        for wrong in ["1", "20%", "-1%", "nan", "%"] {
+            let Err(said) = design(&[&format!("--noise={wrong}")]) else { panic!("{wrong} is refused") };
+            assert!(said.contains("from 0 to 0.1, such as 1% or 0.01"), "{wrong}: {said}");
+        }
+    }
+}

@@ -118,7 +118,8 @@ fn inspect_compares_the_gain_with_what_the_kernel_lacks() {
         ("1.7", "line", "take \"cell\", and for mu estimator = \"joint\""),
     ] {
         let name = format!("pad_{kernel}_{}", depth.replace('.', "_"));
-        good(here, &["new", &name, "--paper-sensor", "2", "--depth-mm", depth, "--estimator", kernel]);
+        let small = ["--paper-sensor", "2", "--columns", "5", "--rows", "5"];
+        good(here, &[&["new", &name, "--depth-mm", depth, "--estimator", kernel], &small[..]].concat());
         let said = good(here, &["inspect", &format!("{name}.toml")]);
         assert!(said.contains(advice) && said.lines().all(|line| line.chars().count() <= 110), "{said}");
     }
