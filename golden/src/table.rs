@@ -9,35 +9,13 @@ const GAP: usize = 2;
 /// Rows of a terminal stand in from their header.
 const INDENT: &str = "  ";
 
-/// What a cell says, and what it is to a page with colours.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Cell {
-    /// The words or the figure.
-    pub text: String,
-    /// The class of style: `paper`, `same`, `ours`, `bad`, or nothing.
-    pub class: &'static str,
-}
-
-impl Cell {
-    /// With a class.
-    pub fn new(text: impl Into<String>, class: &'static str) -> Self {
-        Self { text: text.into(), class }
-    }
-}
-
-impl<T: Into<String>> From<T> for Cell {
-    fn from(text: T) -> Self {
-        Self::new(text, "")
-    }
-}
-
 /// A table: the first column to the left, the others to the right.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Table {
     /// Above the columns.
     pub header: Vec<String>,
     /// Row by row; what a row lacks is empty.
-    pub rows: Vec<Vec<Cell>>,
+    pub rows: Vec<Vec<String>>,
     /// Whether the last column holds words, which go to the left too.
     pub ends_in_words: bool,
 }
@@ -55,13 +33,13 @@ impl Table {
     }
 
     /// One row more.
-    pub fn row(&mut self, cells: impl IntoIterator<Item = impl Into<Cell>>) {
+    pub fn row(&mut self, cells: impl IntoIterator<Item = impl Into<String>>) {
         self.rows.push(cells.into_iter().map(Into::into).collect());
     }
 
     /// With rows.
     #[must_use]
-    pub fn with(mut self, rows: impl IntoIterator<Item = impl IntoIterator<Item = impl Into<Cell>>>) -> Self {
+    pub fn with(mut self, rows: impl IntoIterator<Item = impl IntoIterator<Item = impl Into<String>>>) -> Self {
         rows.into_iter().for_each(|row| self.row(row));
         self
     }
@@ -72,7 +50,7 @@ impl Table {
 
     /// For a terminal: a rule below the header, columns as wide as they need and at least `first` and `others` wide.
     pub fn text(&self, first: usize, others: usize) -> String {
-        let cells = |column: usize| self.rows.iter().filter_map(move |row| row.get(column)).map(|cell| &cell.text);
+        let cells = |column: usize| self.rows.iter().filter_map(move |row| row.get(column));
         let widths: Vec<usize> = (0..self.header.len())
             .map(|column| {
                 let (before, least) = if column == 0 { (INDENT.len(), first) } else { (GAP, others) };
@@ -97,7 +75,7 @@ impl Table {
         let header: Vec<&str> = self.header.iter().map(String::as_str).collect();
         let mut text = line("", &header) + &rule(widths.iter().sum());
         for row in &self.rows {
-            text += &line(INDENT, &row.iter().map(|cell| cell.text.as_str()).collect::<Vec<_>>());
+            text += &line(INDENT, &row.iter().map(String::as_str).collect::<Vec<_>>());
         }
         text
     }
@@ -125,12 +103,5 @@ mod tests {
         assert_eq!(wide.lines().nth(1).map(|rule| rule.chars().count()), Some(8 + 9 + 9), "{wide}");
         // `µ` has two bytes.
         assert_eq!(ends[0], ends[2] + 1, "{wide}");
-    }
-
-    #[test]
-    fn a_template_gets_cells_with_their_class() {
-        let table = Table::new(["a"]).with([[Cell::new("1", "ours")]]);
-        let json = serde_json::to_value(table).unwrap();
-        assert_eq!(json["rows"][0][0], serde_json::json!({ "text": "1", "class": "ours" }));
     }
 }

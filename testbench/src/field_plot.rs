@@ -92,7 +92,7 @@ impl<'a> Grid<'a> {
         let (width, height) = self.cell();
         for (taxel, &value) in values.iter().enumerate() {
             let share = if largest > 0.0 { value / largest } else { 0.0 };
-            svg.rectangle(self.corner(taxel), (width - 1.0, height - 1.0), &colour(share), 1.0);
+            svg.rectangle(self.corner(taxel), (width - 1.0, height - 1.0), &colour(share));
         }
         let [_, right, top, bottom] = self.edges();
         // From what presses, below, to zero or to what pulls.
@@ -105,7 +105,7 @@ impl<'a> Grid<'a> {
         for index in 0..BAR_STEPS {
             let place = to + (from - to) * (index as f64 + 0.5) / BAR_STEPS as f64;
             let at = (right + 10.0, top + step * index as f64);
-            svg.rectangle(at, (10.0, step + 0.3), &colour(place * place.abs()), 1.0);
+            svg.rectangle(at, (10.0, step + 0.3), &colour(place * place.abs()));
         }
         let mut label = |value: f64, y: f64| {
             svg.sized_text((right + 24.0, y + 4.0), "start", INK, 11, &format!("{} {unit}", short(value * worth)));
@@ -256,27 +256,6 @@ fn draw_errors(svg: &mut Svg, sensor: &Sensor, x: f64, answer: &Answer, field: &
     }
 }
 
-/// The stress of a frame in Pa.
-pub fn stress(sensor: &Sensor, stress: &[f64]) -> String {
-    let mut svg = Svg::new(WIDTH, height(sensor), "Stress that the taxels feel");
-    draw_stress(&mut svg, sensor, stress);
-    svg.finish()
-}
-
-/// The field of an answer, with the true forces as far as they are known.
-pub fn forces(sensor: &Sensor, answer: &Answer, truth: Option<&Truth>) -> String {
-    let mut svg = Svg::new(WIDTH, height(sensor), "Forces that the hardware finds");
-    draw_forces(&mut svg, sensor, 0.0, answer, truth);
-    svg.finish()
-}
-
-/// What the field of an answer is off the true one, `[f_x, f_y, f_z]` of each taxel in newtons.
-pub fn errors(sensor: &Sensor, answer: &Answer, field: &[Vec<f64>; 3]) -> String {
-    let mut svg = Svg::new(WIDTH, height(sensor), "What the forces found are off the true ones");
-    draw_errors(&mut svg, sensor, 0.0, answer, field);
-    svg.finish()
-}
-
 /// Stress and forces beside each other, and the errors where each taxel's true force is known.
 pub fn frame(sensor: &Sensor, stress: &[f64], answer: &Answer, truth: Option<&Truth>) -> String {
     let field = truth.and_then(|truth| truth.field.as_ref());
@@ -321,10 +300,13 @@ mod tests {
         let sensor = Sensor { columns: 2, rows: 2, pitch_mm: [4.0; 2], depth_mm: 3.0 };
         let field = [vec![0.0; 4], vec![0.0; 4], vec![-2.0, 0.0, 0.0, 0.0]];
         let mut answer = Answer { field: field.clone(), ..Answer::default() };
-        assert!(errors(&sensor, &answer, &field).contains("largest: 0 %"));
+        let truth = Truth { force: [0.0, 0.0, -2.0], field: Some(field) };
+        let drawn = |answer: &Answer| frame(&sensor, &[0.0; 4], answer, Some(&truth));
+        assert!(drawn(&answer).contains("largest: 0 %"));
         answer.field[2][3] = 0.1;
-        let text = errors(&sensor, &answer, &field);
-        assert!(text.contains("largest: 5 %") && text.contains("0.1 N") && !text.contains("2 N"), "{text}");
+        let text = drawn(&answer);
+        let (_, errors) = text.split_once("errors: found less true").expect("the errors");
+        assert!(errors.contains("largest: 5 %") && errors.contains("0.1 N") && !errors.contains("2 N"), "{text}");
         assert!(!frame(&sensor, &[0.0; 4], &answer, None).contains("errors:"));
     }
 }

@@ -4,8 +4,6 @@ use std::fmt::Write;
 
 /// Neither black nor white, so that it can be read on both.
 pub const INK: &str = "#7d8590";
-/// What is not ours.
-pub const MARK: &str = "#d63b5c";
 
 /// Between the lines of a dot's name.
 const NAME_LINE: f64 = 14.0;
@@ -14,8 +12,6 @@ const NAME_LINE: f64 = 14.0;
 #[derive(Debug)]
 pub struct Svg {
     text: String,
-    /// Where names of dots appear.
-    names_at: Option<(f64, f64)>,
 }
 
 impl Svg {
@@ -26,13 +22,7 @@ impl Svg {
              font-size=\"13\" role=\"img\" aria-label=\"{}\">\n",
             escaped(label)
         );
-        Self { text, names_at: None }
-    }
-
-    /// From here on the name of a dot that is pointed at, touched or reached by the keyboard appears at a place.
-    #[must_use]
-    pub fn with_names_at(self, place: (f64, f64)) -> Self {
-        Self { names_at: Some(place), ..self }
+        Self { text }
     }
 
     /// A line of the grid.
@@ -43,24 +33,6 @@ impl Svg {
             "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"{INK}\" \
              stroke-opacity=\"0.35\"/>"
         );
-    }
-
-    /// The powers of ten of an axis below the picture, each with its line of the grid between two heights.
-    pub fn decades_below(&mut self, axis: Axis, [bottom, top]: [f64; 2]) {
-        for decade in axis.decades() {
-            let place = axis.place(10_f64.powi(decade));
-            self.grid((place, bottom), (place, top));
-            self.text((place, bottom + 18.0), "middle", INK, &power(decade));
-        }
-    }
-
-    /// Those of an axis to the left of it.
-    pub fn decades_beside(&mut self, axis: Axis, [left, right]: [f64; 2]) {
-        for decade in axis.decades() {
-            let place = axis.place(10_f64.powi(decade));
-            self.grid((left, place), (right, place));
-            self.text((left - 8.0, place + 4.0), "end", INK, &power(decade));
-        }
     }
 
     /// A line through places.
@@ -74,60 +46,38 @@ impl Svg {
         );
     }
 
-    /// A full circle.
-    pub fn dot(&mut self, (x, y): (f64, f64), radius: f64, colour: &str) {
-        let _ = writeln!(self.text, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{colour}\"/>");
-    }
-
-    /// A full circle that says what it is when it is pointed at, touched or reached by the keyboard; a page shows `.name` of
-    /// the `.dot` that has the focus.
-    pub fn named_dot(&mut self, (x, y): (f64, f64), radius: f64, colour: &str, name: &str) {
+    /// A full circle that says what it is, at `names_at`, when it is pointed at, touched or reached by the keyboard: a page
+    /// shows `.name` of the `.dot` that has the focus.
+    pub fn named_dot(&mut self, (x, y): (f64, f64), radius: f64, colour: &str, name: &str, names_at: (f64, f64)) {
         let shape =
             format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{colour}\" fill-opacity=\"0.8\"/>");
-        self.named(&shape, name);
+        self.named(&shape, name, names_at);
     }
 
     /// The same as a triangle that points to what is beyond the picture: up, or down with a negative `radius`.
-    pub fn named_triangle(&mut self, (x, y): (f64, f64), radius: f64, colour: &str, name: &str) {
+    pub fn named_triangle(&mut self, (x, y): (f64, f64), radius: f64, colour: &str, name: &str, names_at: (f64, f64)) {
         let (left, right, base) = (x - radius, x + radius, y + radius);
         let shape = format!(
             "<path d=\"M{x:.1} {:.1}L{right:.1} {base:.1}L{left:.1} {base:.1}Z\" fill=\"{colour}\" \
              fill-opacity=\"0.8\"/>",
             y - radius
         );
-        self.named(&shape, name);
+        self.named(&shape, name, names_at);
     }
 
-    /// A full rectangle that says what it is.
-    pub fn named_rectangle(
-        &mut self,
-        (x, y): (f64, f64),
-        (width, height): (f64, f64),
-        (colour, opacity): (&str, f64),
-        name: &str,
-    ) {
-        let shape = format!(
-            "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{colour}\" \
-             fill-opacity=\"{opacity:.2}\"/>"
-        );
-        self.named(&shape, name);
-    }
-
-    fn named(&mut self, shape: &str, name: &str) {
+    fn named(&mut self, shape: &str, name: &str, (x, y): (f64, f64)) {
         let name = escaped(name);
         // What it is, and below that its figures.
         let lines = name.split_once(": ").map_or_else(|| vec![name.as_str()], |(what, figures)| vec![what, figures]);
-        let spans = |(x, y): (f64, f64)| -> String {
-            let line = |(index, text): (usize, &&str)| {
-                let y = y + NAME_LINE * index as f64;
-                format!("<tspan x=\"{x:.1}\" y=\"{y:.1}\">{text}</tspan>")
-            };
-            lines.iter().enumerate().map(line).collect()
+        let span = |(index, text): (usize, &&str)| {
+            format!("<tspan x=\"{x:.1}\" y=\"{:.1}\">{text}</tspan>", y + NAME_LINE * index as f64)
         };
-        let shown = self.names_at.map_or_else(String::new, |place| {
-            format!("<text class=\"name\" display=\"none\" fill=\"{INK}\" font-size=\"11\">{}</text>", spans(place))
-        });
-        let _ = writeln!(self.text, "<g class=\"dot\" tabindex=\"0\"><title>{name}</title>{shape}{shown}</g>");
+        let spans: String = lines.iter().enumerate().map(span).collect();
+        let _ = writeln!(
+            self.text,
+            "<g class=\"dot\" tabindex=\"0\"><title>{name}</title>{shape}<text class=\"name\" display=\"none\" \
+             fill=\"{INK}\" font-size=\"11\">{spans}</text></g>"
+        );
     }
 
     /// An empty circle.
@@ -139,35 +89,11 @@ impl Svg {
         );
     }
 
-    /// A cross, for [`MARK`]ed places.
-    pub fn cross(&mut self, (x, y): (f64, f64)) {
-        let _ = writeln!(
-            self.text,
-            "<path d=\"M{:.1} {:.1}l12 12m0 -12l-12 12\" stroke=\"{MARK}\" stroke-width=\"3\"/>",
-            x - 6.0,
-            y - 6.0
-        );
-    }
-
     /// A full rectangle.
-    pub fn rectangle(&mut self, (x, y): (f64, f64), (width, height): (f64, f64), colour: &str, opacity: f64) {
-        let opacity = if opacity < 1.0 { format!(" fill-opacity=\"{opacity:.2}\"") } else { String::new() };
+    pub fn rectangle(&mut self, (x, y): (f64, f64), (width, height): (f64, f64), colour: &str) {
         let _ = writeln!(
             self.text,
-            "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{colour}\"{opacity}/>"
-        );
-    }
-
-    /// The edge of a rectangle; what lies below it is still pointed at.
-    pub fn frame(&mut self, (x, y): (f64, f64), (width, height): (f64, f64), colour: &str) {
-        let _ = writeln!(
-            self.text,
-            "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"none\" stroke=\"{colour}\" \
-             stroke-width=\"2\" pointer-events=\"none\"/>",
-            x + 1.0,
-            y + 1.0,
-            width - 2.0,
-            height - 2.0
+            "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{colour}\"/>"
         );
     }
 
@@ -224,17 +150,6 @@ impl Svg {
         );
     }
 
-    /// A number above dots, on a rim of the ground's colour; the page knows that.
-    pub fn haloed_text(&mut self, (x, y): (f64, f64), colour: &str, text: &str) {
-        let _ = writeln!(
-            self.text,
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" fill=\"{colour}\" font-weight=\"600\" \
-             paint-order=\"stroke\" stroke-width=\"3\" stroke-linejoin=\"round\" \
-             style=\"stroke: var(--card, #ffffff)\">{}</text>",
-            escaped(text)
-        );
-    }
-
     /// The picture's text.
     pub fn finish(mut self) -> String {
         self.text.push_str("</svg>\n");
@@ -260,15 +175,10 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Covers the values, from a power of ten to one or, if `tight`, to the largest; `from` and `to` are where they
-    /// begin and end on the page.
-    pub fn covering(values: impl Iterator<Item = f64>, tight: bool, from: f64, to: f64) -> Self {
-        let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
-        for value in values {
-            (low, high) = (low.min(value), high.max(value));
-        }
-        let (low, high) = if low.is_finite() { (low.log10().floor(), high.log10()) } else { (0.0, 1.0) };
-        let high = if tight { high } else { high.ceil() };
+    /// Covers the values, from a power of ten to one; `from` and `to` are where they begin and end on the page.
+    pub fn covering(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Self {
+        let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+        let (low, high) = if low.is_finite() { (low.log10().floor(), high.log10().ceil()) } else { (0.0, 1.0) };
         Self { low, high: high.max(low + 1.0), from, to }
     }
 
@@ -277,20 +187,11 @@ impl Axis {
         self.from + (value.log10() - self.low) / (self.high - self.low) * (self.to - self.from)
     }
 
-    /// The powers of ten on the axis.
-    pub fn decades(self) -> impl Iterator<Item = i32> {
-        self.low as i32..=self.high.floor() as i32
-    }
-}
-
-/// `1`, `10`, `1,000`, `10 M`; `0.1`, and smaller ones as `1e-3`.
-fn power(decade: i32) -> String {
-    match decade {
-        ..-1 => format!("1e{decade}"),
-        -1 => "0.1".to_owned(),
-        0..3 => 10_u64.pow(decade as u32).to_string(),
-        3..6 => format!("{},000", 10_u64.pow(decade as u32 - 3)),
-        _ => format!("{} M", 10_u64.pow(decade as u32 - 6)),
+    /// The values on the axis that are one of `steps` times a power of ten.
+    pub fn marks(self, steps: &[f64]) -> impl Iterator<Item = f64> {
+        let decades = (self.low as i32..=self.high as i32).map(|decade| 10_f64.powi(decade));
+        let end = 10_f64.powf(self.high) * (1.0 + 1e-9);
+        decades.flat_map(move |decade| steps.iter().map(move |step| step * decade)).filter(move |&value| value <= end)
     }
 }
 
@@ -300,12 +201,9 @@ mod tests {
 
     #[test]
     fn axes_are_logarithmic() {
-        let axis = Axis::covering([20.0, 900.0].into_iter(), false, 0.0, 200.0);
+        let axis = Axis::covering([20.0, 900.0].into_iter(), 0.0, 200.0);
         assert_eq!([10.0, 100.0, 1000.0].map(|value| axis.place(value).round() as i64), [0, 100, 200]);
-        let tight = Axis::covering([20.0, 1000.0].into_iter(), true, 0.0, 200.0);
-        assert_eq!(tight.place(1000.0).round() as i64, 200);
-        assert_eq!([0, 3, 4, 6, 7].map(power), ["1", "1,000", "10,000", "1 M", "10 M"]);
-        assert_eq!([-3, -1].map(power), ["1e-3", "0.1"]);
+        assert_eq!(axis.marks(&[1.0, 5.0]).collect::<Vec<_>>(), [10.0, 50.0, 100.0, 500.0, 1000.0]);
     }
 
     #[test]

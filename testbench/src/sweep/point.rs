@@ -184,20 +184,10 @@ impl Point {
     }
 }
 
-/// The number of a sensor in the paper.
-pub fn paper_sensor(sensor: &Geometry) -> Option<usize> {
-    let of = |pitch_mm| Geometry { columns: 10, rows: 10, pitch_mm, depth_mm: 3.0 };
-    [of([4.0, 2.0]), of([4.0, 4.0])].iter().position(|known| known == sensor).map(|index| index + 1)
-}
-
-/// The paper's name of a sensor, or its geometry.
+/// A sensor's geometry for people.
 pub fn sensor_title(sensor: &Geometry) -> String {
     let Geometry { columns, rows, pitch_mm: [x, y], depth_mm } = sensor;
-    let geometry = format!("{columns} × {rows} taxels of {x} × {y} mm, {depth_mm} mm deep");
-    match paper_sensor(sensor) {
-        Some(number) => format!("Sensor {number}: {geometry}"),
-        None => geometry,
-    }
+    format!("{columns} × {rows} taxels of {x} × {y} mm, {depth_mm} mm deep")
 }
 
 /// The sensors of points, each once, in order.

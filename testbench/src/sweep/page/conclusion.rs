@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 
 use golden::design::PlanKind;
-use golden::table::{Cell, Table};
+use golden::table::Table;
 use serde::Serialize;
 
-use super::paper::TABLE_3;
 use crate::figures::grouped;
-use crate::sweep::point::{Calibration, Hardware, Point, paper_sensor};
+use crate::sweep::point::{Calibration, Hardware, Point};
 
 /// Errors that differ by no more, in percent of the normal force, are taken for equal.
 const AS_GOOD: f64 = 0.5;
@@ -95,16 +94,15 @@ pub fn conclusion(points: &[&Point], scenes: &[&str]) -> Option<Conclusion> {
         ("fastest", variants.iter().min_by_key(quickest)),
         ("most exact with a filter", filtered.min_by(|a, b| a.error().total_cmp(&b.error()))),
     ];
-    let mut table = Table::new(HEADER);
-    let mut shown: Vec<&str> = Vec::new();
+    let mut shown: Vec<(&Variant, Vec<&str>)> = Vec::new();
     for (role, variant) in roles {
-        let Some(variant) = variant.filter(|variant| !shown.contains(&variant.point.key.as_str())) else { continue };
-        shown.push(&variant.point.key);
-        table.row(variant.row(role));
+        let Some(variant) = variant else { continue };
+        match shown.iter_mut().find(|(known, _)| known.point.key == variant.point.key) {
+            Some((_, roles)) => roles.push(role),
+            None => shown.push((variant, vec![role])),
+        }
     }
-    if let Some(published) = published(best.point) {
-        table.row(published);
-    }
+    let table = Table::new(HEADER).with(shown.iter().map(|(variant, roles)| variant.row(&roles.join(", "))));
     let is_best = |point: &&&Point| point.label() == best.point.label() && scenes.contains(&point.scene.as_str());
     let frames: usize = points.iter().filter(is_best).map(|point| point.frames).sum();
     let judged = format!(
@@ -149,16 +147,6 @@ fn variants<'a>(points: &[&'a Point], scenes: &[&str]) -> Vec<Variant<'a>> {
             })
         })
         .collect()
-}
-
-/// The row of the paper's hardware without a filter, if the sensor is one of its two; by finite elements, on its own contact.
-fn published(point: &Point) -> Option<Vec<Cell>> {
-    let number = paper_sensor(&point.sensor)?;
-    let row = TABLE_3.iter().find(|row| (row.sensor, row.filter, row.software) == (number, "none", false))?;
-    let [x, y, z, ..] = row.max;
-    let cells = ["published, no filter, on its own contact".to_owned(), format!("{:.1}", x.max(y)), format!("{z:.1}")];
-    let time = grouped((1000.0 * row.milliseconds).round() as u64);
-    Some(cells.into_iter().chain([String::new(), time]).map(|text| Cell::new(text, "paper")).collect())
 }
 
 fn keys(point: &Point) -> String {
@@ -235,8 +223,7 @@ pub(super) mod tests {
 
     /// The first five columns.
     fn rows(found: &Conclusion) -> Vec<[String; 5]> {
-        let row = |row: &Vec<Cell>| [0, 1, 2, 3, 4].map(|column| row[column].text.clone());
-        found.table.rows.iter().map(row).collect()
+        found.table.rows.iter().map(|row| [0, 1, 2, 3, 4].map(|column| row[column].clone())).collect()
     }
 
     #[test]
@@ -259,13 +246,12 @@ pub(super) mod tests {
         let expected = [
             ["recommended: no filter, reduced plan, line, 16 lanes, 18 × 27 bits", "1.9", "0.0", "2.8", "16.0"],
             [
-                "fastest with at most twice its error: no filter, reduced plan, line, 64 lanes, 18 × 27 bits",
+                "fastest with at most twice its error, fastest: no filter, reduced plan, line, 64 lanes, 18 × 27 bits",
                 "1.6",
                 "0.0",
                 "2.1",
                 "8.0",
             ],
-            ["published, no filter, on its own contact", "6.0", "11.9", "", "28,760"],
         ];
         assert_eq!(rows(&found), expected);
         assert!(
@@ -287,11 +273,11 @@ pub(super) mod tests {
         "filtered".clone_into(&mut filtered.key);
         filtered.hardware.as_mut().expect("hardware").bram36 += 6.0;
         let found = conclusion(&[&filtered, &plain], &["a"]).expect("a conclusion");
-        let [first, second, _] = rows(&found).try_into().expect("three rows");
-        assert!(first[0].starts_with("recommended: no filter"), "{first:?}");
+        let [first, second] = rows(&found).try_into().expect("two rows");
+        assert!(first[0].contains("recommended, ") && first[0].contains(": no filter"), "{first:?}");
         assert!(second[0].starts_with("most exact with a filter: F2 p = 50"), "{second:?}");
         let alone = conclusion(&[&filtered], &["a"]).expect("a conclusion");
-        assert_eq!(rows(&alone).len(), 2, "its row, and the published one");
+        assert_eq!(rows(&alone).len(), 1, "one row with all roles");
     }
 
     /// What is fast and wrong has a row of its own.
@@ -299,7 +285,7 @@ pub(super) mod tests {
     fn the_fastest_is_one_to_take() {
         let points = [point("a", 16, 2000, 2.0), point("a", 64, 1000, 3.9), point("a", 32, 900, 4.1)];
         let found = rows(&conclusion(&points.each_ref(), &["a"]).expect("a conclusion"));
-        let [_, exact, fastest, _] = found.try_into().expect("four rows");
+        let [_, exact, fastest] = found.try_into().expect("three rows");
         assert!(
             exact[0].starts_with("fastest with at most twice its error: ") && exact[0].contains("64 lanes"),
             "{exact:?}"

@@ -4,7 +4,7 @@ use golden::design::{Design, Filter, PlanKind};
 use golden::metrics::Quantiles;
 use golden::scene::SceneFrame;
 use golden::status::Status;
-use golden::table::{Cell, Table};
+use golden::table::Table;
 use hdl_gen::plan::Plan;
 
 use super::PageError;
@@ -53,14 +53,14 @@ pub fn table(designs: &[&Design], frames: u64) -> Result<Option<Table>, PageErro
     for (index, (kind, frames)) in made.iter().enumerate() {
         let first = index * frames.len();
         let cells = columns.iter().flat_map(|found| judged(frames, &found[first..][..frames.len()]));
-        table.row(std::iter::once(Cell::from(kind.title())).chain(cells));
+        table.row(std::iter::once(kind.title().to_owned()).chain(cells));
     }
     Ok(Some(table))
 }
 
 /// Median, 95 % and worst of the errors along the surface, in percent of the normal force; and how many of the frames
 /// say more than that they are good.
-fn judged(frames: &[SceneFrame], found: &[Answer]) -> [Cell; 2] {
+fn judged(frames: &[SceneFrame], found: &[Answer]) -> [String; 2] {
     let error = |(frame, answer): (&SceneFrame, &Answer)| {
         let [x, y] = [0, 1].map(|axis| answer.resultant[axis] - frame.force[axis]);
         100.0 * x.hypot(y) / frame.force[2].abs()
@@ -69,7 +69,7 @@ fn judged(frames: &[SceneFrame], found: &[Answer]) -> [Cell; 2] {
     // A slipping contact has no low confidence by that.
     let tells = |answer: &&Answer| answer.status & !Status::SLIP.0 != 0;
     let flagged = 100.0 * found.iter().filter(tells).count() as f64 / found.len() as f64;
-    [Cell::from(format!("{median:.1} / {most:.1} / {worst:.1}")), Cell::from(format!("{flagged:.0}"))]
+    [format!("{median:.1} / {most:.1} / {worst:.1}"), format!("{flagged:.0}")]
 }
 
 #[cfg(test)]
