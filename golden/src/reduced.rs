@@ -19,6 +19,7 @@ use crate::matrices::Matrices;
 use crate::names::MatrixName;
 pub use crate::names::ReducedName;
 use crate::parity::{CLASSES, FoldedMatrix, Quads};
+use crate::products::Float;
 use crate::sums::{ByPq, RESULTANTS};
 
 /// The four blocks of a matrix, sparse, row by row.
@@ -34,21 +35,19 @@ pub struct FoldedRows {
 }
 
 impl FoldedRows {
-    /// The product with a folded vector.
-    pub fn apply(&self, x: &[Vec<f64>; CLASSES]) -> [Vec<f64>; CLASSES] {
-        let mut result: [Vec<f64>; CLASSES] = std::array::from_fn(|_| Vec::with_capacity(self.rows.len()));
-        for row in &self.rows {
-            let mut sums = [0.0; CLASSES];
-            for &(column, coefficients) in row {
-                for class in 0..CLASSES {
-                    sums[class] += coefficients[class] * x[class][column as usize];
-                }
+    /// The product with a folded vector, the four classes of each element together.
+    pub fn times<T: Float>(&self, x: &[[T; CLASSES]], result: &mut [[T; CLASSES]]) {
+        for (row, result) in self.rows.iter().zip(result) {
+            let mut sums = [T::default(); CLASSES];
+            for (column, [a, b, c, d]) in row {
+                let x = &x[*column as usize];
+                sums[0] = sums[0] + T::of(*a) * x[0];
+                sums[1] = sums[1] + T::of(*b) * x[1];
+                sums[2] = sums[2] + T::of(*c) * x[2];
+                sums[3] = sums[3] + T::of(*d) * x[3];
             }
-            for (class, sum) in sums.into_iter().enumerate() {
-                result[class ^ self.parity].push(sum);
-            }
+            *result = [0, 1, 2, 3].map(|class| sums[class ^ self.parity]);
         }
-        result
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::{Mul, Neg};
 
-use nalgebra::{DMatrix, DVector, DVectorView};
+use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
 
 use super::{CLASSES, Quads, butterfly, sign};
 
@@ -91,10 +91,18 @@ impl FoldedMatrix {
 
     /// The product with a folded vector.
     pub fn apply(&self, x: &[Vec<f64>; CLASSES]) -> [Vec<f64>; CLASSES] {
-        std::array::from_fn(|result| {
-            let class = result ^ self.parity;
-            (&self.blocks[class] * DVectorView::from_slice(&x[class], x[class].len())).as_slice().to_vec()
-        })
+        let mut product = [0, 1, 2, 3].map(|_| vec![0.0; self.quads.count()]);
+        self.add_to(&mut product, x);
+        product
+    }
+
+    /// Adds the product with a folded vector.
+    pub(crate) fn add_to(&self, sum: &mut [Vec<f64>; CLASSES], x: &[Vec<f64>; CLASSES]) {
+        let n = self.quads.count();
+        for (class, block) in self.blocks.iter().enumerate() {
+            let mut sum = DVectorViewMut::from_slice(&mut sum[class ^ self.parity], n);
+            sum.gemv(1.0, block, &DVectorView::from_slice(&x[class], n), 1.0);
+        }
     }
 }
 

@@ -94,26 +94,35 @@ impl Quads {
     /// taxels that are there twice counted twice.
     pub fn fold(&self, x: &[f64]) -> [Vec<f64>; CLASSES] {
         let mut folded: [Vec<f64>; CLASSES] = std::array::from_fn(|_| Vec::with_capacity(self.count()));
-        for q in 0..self.count() {
-            let [a, b, c, d] = butterfly(self.members(q).map(|taxel| x[taxel]));
-            for (class, value) in folded.iter_mut().zip([a, b, c, d]) {
-                class.push(value);
-            }
-        }
+        self.fold_into(&mut folded, |taxel| x[taxel]);
         folded
+    }
+
+    /// As [`Quads::fold`], of the value that `x` has of a taxel, into memory that is there.
+    pub(crate) fn fold_into(&self, folded: &mut [Vec<f64>; CLASSES], x: impl Fn(usize) -> f64) {
+        folded.iter_mut().for_each(Vec::clear);
+        for q in 0..self.count() {
+            let values = butterfly(self.members(q).map(&x));
+            folded.iter_mut().zip(values).for_each(|(class, value)| class.push(value));
+        }
     }
 
     /// Undoes [`Quads::fold`]: `x[member s of q]` is a quarter of the sum over the classes c of
     /// `sign(c, s) * folded[c][q]`.
     pub fn unfold(&self, folded: &[Vec<f64>; CLASSES]) -> Vec<f64> {
         let mut x = vec![0.0; self.taxels()];
+        self.unfold_into(folded, &mut x);
+        x
+    }
+
+    /// As [`Quads::unfold`], into memory that is there.
+    pub(crate) fn unfold_into(&self, folded: &[Vec<f64>; CLASSES], x: &mut [f64]) {
         for q in 0..self.count() {
             let values = butterfly(folded.each_ref().map(|class| class[q]));
             for (taxel, value) in self.members(q).into_iter().zip(values) {
                 x[taxel] = 0.25 * value;
             }
         }
-        x
     }
 }
 

@@ -42,7 +42,7 @@ pub type Quarters<T> = [Vec<[T; CLASSES]>; 2];
 impl Stored<4> for ReducedMatrices {
     fn times<T: Float>(&self, source: Source, x: &[[T; 4]], result: &mut [[T; 4]], _: &mut Quarters<T>) {
         if let Source::Ten(name) = source {
-            times(self.get(name), x, result);
+            self.get(name).times(x, result);
         }
     }
 
@@ -109,7 +109,7 @@ impl Stored<1> for PaperMatrices {
         folded.clear();
         folded.extend(self.members.iter().map(|taxels| butterfly(taxels.map(|taxel| x[taxel]))));
         product.resize(folded.len(), Default::default());
-        times(&self.c33, folded, product);
+        self.c33.times(folded, product);
         for (taxels, product) in self.members.iter().zip(product) {
             for (&taxel, sum) in taxels.iter().zip(butterfly(*product)) {
                 result[taxel] = T::of(0.25) * sum;
@@ -124,21 +124,6 @@ impl Stored<1> for PaperMatrices {
 
     fn arm_m(&self, taxel: usize) -> [f64; 2] {
         self.arms_m[taxel]
-    }
-}
-
-/// The product of a folded matrix with a folded vector.
-fn times<T: Float>(matrix: &FoldedRows, x: &[[T; CLASSES]], result: &mut [[T; CLASSES]]) {
-    for (row, result) in matrix.rows.iter().zip(result) {
-        let mut sums = [T::default(); CLASSES];
-        for (column, [a, b, c, d]) in row {
-            let x = &x[*column as usize];
-            sums[0] = sums[0] + T::of(*a) * x[0];
-            sums[1] = sums[1] + T::of(*b) * x[1];
-            sums[2] = sums[2] + T::of(*c) * x[2];
-            sums[3] = sums[3] + T::of(*d) * x[3];
-        }
-        *result = [0, 1, 2, 3].map(|class| sums[class ^ matrix.parity]);
     }
 }
 

@@ -5,6 +5,7 @@ use nalgebra::DVector;
 use super::{Solution, Solver, Status, Workspace, op};
 use crate::contacts::{ContactForces, Found};
 use crate::matrices::{Matrices, MatrixName};
+use crate::parity::CLASSES;
 
 /// Rounds of separation: by the forces of the frame as one contact, then by the forces of the separated contacts. More rounds
 /// change next to nothing.
@@ -30,6 +31,12 @@ pub(super) struct Separation {
     before: Vec<[f64; 2]>,
     /// Change of that in the last round, in newtons.
     changed: Vec<f64>,
+    /// The frame that each contact would cause alone, in pascals.
+    frames: Vec<DVector<f64>>,
+    /// The part of the frame that no forces explain.
+    unexplained: DVector<f64>,
+    /// A folded vector, and a folded product.
+    folded: [[Vec<f64>; CLASSES]; 2],
     /// The solution of one contact.
     alone: Option<Box<Solution>>,
 }
@@ -91,10 +98,10 @@ impl Solver {
         workspace.separation.before.resize(contacts, [0.0; 2]);
         workspace.separation.changed.clear();
         for round in 1..=ROUNDS {
-            let frames = self.frames_alone(&workspace.separation, &whole);
+            self.find_frames(&mut workspace.separation, &whole);
             workspace.separation.forces.iter_mut().for_each(|component| component.fill(0.0));
-            for (number, frame) in frames.into_iter().enumerate() {
-                workspace.b = frame;
+            for number in 0..contacts {
+                workspace.b.copy_from(&workspace.separation.frames[number]);
                 let contact = self.reader.analyse(&workspace.b);
                 alone.reset(status, self.solved_length());
                 self.solve_alone(workspace, contact, &mut alone);
@@ -144,35 +151,40 @@ impl Solver {
         solution.standard_error = solution.records.iter().fold(0.0, |all, contact| contact.standard_error.hypot(all));
     }
 
-    /// The frame that each contact would cause alone, in pascals: the stress of the forces in its region, and the part of the
-    /// frame there that no forces explain.
+    /// Finds the frame that each contact would cause alone: the stress of the forces in its region, and the part of the frame
+    /// there that no forces explain.
     ///
     /// They add up to the whole frame. Of a sensor that reads no tension their tension is 0.
-    fn frames_alone(&self, separation: &Separation, whole: &DVector<f64>) -> Vec<DVector<f64>> {
-        let Separation { found, forces, .. } = separation;
+    fn find_frames(&self, separation: &mut Separation, whole: &DVector<f64>) {
+        let Separation { found, forces, frames, unexplained, folded: [folded, product], .. } = separation;
         let Matrices { c31, c32, c33, .. } = &self.matrices;
-        let frame = |contact: usize| {
-            let [x, y, z] = forces.each_ref().map(|component| {
-                let own = component.iter().zip(&found.regions);
-                let own = own.map(|(&force, &of)| if of == Some(contact) { force } else { 0.0 });
-                DVector::from_iterator(component.len(), own)
-            });
-            c31 * &x + c32 * &y + c33 * &z
-        };
-        let mut frames: Vec<DVector<f64>> = (0..found.taxels.len()).map(frame).collect();
+        let quads = self.matrices.quads();
+        frames.resize_with(found.taxels.len(), || whole.clone());
+        unexplained.clone_from(whole);
+        for (contact, frame) in frames.iter_mut().enumerate() {
+            for class in &mut *product {
+                class.clear();
+                class.resize(quads.count(), 0.0);
+            }
+            for (matrix, forces) in [c31, c32, c33].into_iter().zip(&*forces) {
+                let own = |taxel: usize| if found.regions[taxel] == Some(contact) { forces[taxel] } else { 0.0 };
+                quads.fold_into(folded, own);
+                matrix.add_to(product, folded);
+            }
+            quads.unfold_into(product, frame.as_mut_slice());
+            *unexplained -= &*frame;
+        }
         // Without a filter, which makes forces inexact, this is rounding.
-        let unexplained = frames.iter().fold(whole.clone(), |left, frame| left - frame);
         for (taxel, (&stress, &contact)) in unexplained.iter().zip(&found.regions).enumerate() {
             if let Some(contact) = contact {
                 frames[contact][taxel] += stress;
             }
         }
         if !self.reader.reads_tension() {
-            for frame in &mut frames {
+            for frame in frames {
                 frame.apply(|stress| *stress = stress.min(0.0));
             }
         }
-        frames
     }
 
     /// The record of the contact that a solution is of.

@@ -96,13 +96,18 @@ fn blocks_do_what_the_matrix_does() {
         let x = uneven(columns * rows);
         let whole = DVector::from_vec(x.clone());
         let folded = quads.fold(&x);
+        let elements: Vec<[f64; 4]> = (0..quads.count()).map(|q| folded.each_ref().map(|class| class[q])).collect();
         for (name, dense) in ReducedName::ALL.into_iter().zip(&dense) {
             let product = dense * &whole;
             let tolerance = 1e-12 * product.amax();
             let blocks = FoldedMatrix::new(dense, name.parity(), &quads);
             let sparse = reduced.get(name);
             assert_eq!(sparse.parity, name.parity());
-            for found in [quads.unfold(&blocks.apply(&folded)), quads.unfold(&sparse.apply(&folded))] {
+            let mut by_rows = vec![[0.0; 4]; quads.count()];
+            sparse.times(&elements, &mut by_rows);
+            let by_rows = [0, 1, 2, 3].map(|class| by_rows.iter().map(|row| row[class]).collect());
+            for found in [blocks.apply(&folded), by_rows] {
+                let found = quads.unfold(&found);
                 let error = (DVector::from_vec(found) - &product).amax();
                 assert!(error < tolerance, "{name} of {columns} x {rows}: off by {error:e}");
             }

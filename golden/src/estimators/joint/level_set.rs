@@ -20,6 +20,8 @@ pub(crate) struct Found {
 /// Memory of the search, to be used again for the next frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GridScratch {
+    /// `u_q` of the taxels that may be in tension somewhere on the grid, the dead zone taken off.
+    u: [Vec<f64>; 3],
     /// Parts of the hinges' arguments that depend on the point's column, and on its row: taxel by taxel for each.
     columns: Vec<f64>,
     rows: Vec<f64>,
@@ -33,10 +35,11 @@ fn hinges(a: &[f64], b: &[f64]) -> f64 {
         let stress = a + b;
         if stress > 0.0 { stress } else { 0.0 }
     };
+    let (chunks_a, rest_a) = a.as_chunks::<LANES>();
+    let (chunks_b, rest_b) = b.as_chunks::<LANES>();
+    let rest: f64 = rest_a.iter().zip(rest_b).map(hinge).sum();
     let mut sums = [0.0; LANES];
-    let (chunks_a, chunks_b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
-    let rest: f64 = chunks_a.remainder().iter().zip(chunks_b.remainder()).map(hinge).sum();
-    for (a, b) in chunks_a.zip(chunks_b) {
+    for (a, b) in chunks_a.iter().zip(chunks_b) {
         for (sum, pair) in sums.iter_mut().zip(a.iter().zip(b)) {
             *sum += hinge(pair);
         }
@@ -88,13 +91,21 @@ fn evaluate(side: usize, value: impl Fn(usize, usize) -> f64, allowance: f64, va
 
 /// Searches the grid for `u_q` in pascals, the dead zone in pascals and the allowance above the least value.
 pub(super) fn search(grid: Grid, u: [&[f64]; 3], dead_zone: f64, allowance: f64, scratch: &mut GridScratch) -> Found {
-    let GridScratch { columns, rows, values } = scratch;
-    let (side, taxels, reach) = (grid.side(), u[0].len(), f64::from(grid.reach));
+    let GridScratch { u: pulled, columns, rows, values } = scratch;
+    let (side, reach) = (grid.side(), f64::from(grid.reach));
+    let largest = grid.step() * reach;
+    pulled.iter_mut().for_each(Vec::clear);
+    for ((&u0, &u1), &u2) in u[0].iter().zip(u[1]).zip(u[2]) {
+        if u0 - dead_zone + largest * (u1.abs() + u2.abs()) > 0.0 {
+            pulled.iter_mut().zip([u0 - dead_zone, u1, u2]).for_each(|(kept, value)| kept.push(value));
+        }
+    }
+    let (u, taxels) = (&*pulled, pulled[0].len());
     columns.clear();
     rows.clear();
     for point in -grid.reach..=grid.reach {
         let mu = grid.step() * f64::from(point);
-        columns.extend(u[0].iter().zip(u[1]).map(|(u0, u1)| u0 + u1 * mu - dead_zone));
+        columns.extend(u[0].iter().zip(&u[1]).map(|(u0, u1)| u0 + u1 * mu));
         rows.extend(u[2].iter().map(|u2| u2 * mu));
     }
     let at = |point: usize| point * taxels..(point + 1) * taxels;

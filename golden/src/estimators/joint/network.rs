@@ -7,11 +7,10 @@
 use super::constants::{Correction, WEIGHT_FRACTION};
 use super::features::Features;
 use crate::parity::{CLASSES, Quads, butterfly};
+use crate::reduced::FoldedRows;
 
 /// The correction of a component is at most this, so that an unforeseen contact is never made much worse.
 pub const LARGEST: f64 = 1.0 / 4.0;
-/// Words that are added to the sums in one pass over these, one after the other.
-const TOGETHER: usize = 4;
 /// Classes of the inputs behind the window: odd in x, odd in y, the same again, even.
 pub(crate) const EXTRA_CLASSES: [usize; 5] = [1, 2, 1, 2, 0];
 
@@ -24,9 +23,8 @@ pub(crate) struct Network {
     pub(crate) half_window: [usize; 2],
     /// Members of each quad of the window, each once: index in the features, and the sign's bits.
     window: Vec<Vec<(usize, usize)>>,
-    /// Weights of all hidden units for each word of inputs and class, a word for each quad and one for each other input,
-    /// the units next to each other.
-    hidden: Vec<[Vec<f64>; CLASSES]>,
+    /// Weights of each hidden unit (rows) for the words of inputs, by class: one for each quad and one for each other input.
+    hidden: FoldedRows,
     output: [Vec<f64>; 2],
 }
 
@@ -35,8 +33,8 @@ pub(crate) struct Network {
 pub(crate) struct NetworkScratch {
     /// Words of inputs, by class.
     inputs: Vec<[f64; CLASSES]>,
-    /// The hidden units' sums by class.
-    sums: [Vec<f64>; CLASSES],
+    /// The hidden units' sums, by class.
+    sums: Vec<[f64; CLASSES]>,
 }
 
 impl Network {
@@ -46,32 +44,23 @@ impl Network {
         let [half_x, half_y] = *half_window;
         let quads = Quads::new(2 * half_x + 1, 2 * half_y + 1);
         let weight = |unit: &Vec<i32>, input: usize| step * f64::from(unit[input]);
-        let mut words: Vec<[Vec<f64>; CLASSES]> = Vec::new();
-        let mut window = Vec::new();
-        for quad in 0..quads.count() {
-            let members: Vec<(usize, usize)> = quads.distinct(quad).collect();
-            // The classes' shares: a weight of a member is their sum with its signs.
-            let classes = hidden.iter().map(|unit| {
-                let mut values = [0.0; CLASSES];
-                for &(member, place) in &members {
-                    values[member] = weight(unit, place);
-                }
-                let sums = butterfly(values);
+        let window: Vec<Vec<(usize, usize)>> = (0..quads.count())
+            .map(|quad| quads.distinct(quad).map(|(member, place)| (place, member)).collect())
+            .collect();
+        let row = |unit: &Vec<i32>| {
+            let of_window = window.iter().enumerate().map(|(quad, members)| {
+                // The classes' shares: a weight of a member is their sum with its signs.
+                let sums = butterfly(placed(members.iter().map(|&(place, member)| (member, weight(unit, place)))));
                 let share = |class: usize| if quads.exists(class, quad) { sums[class] } else { 0.0 };
                 [0, 1, 2, 3].map(|class| share(class) / members.len() as f64)
             });
-            words.push(by_class(classes));
-            window.push(members.into_iter().map(|(member, place)| (place, member)).collect());
-        }
-        for (offset, of) in EXTRA_CLASSES.into_iter().enumerate() {
-            words.push(by_class(hidden.iter().map(|unit| {
-                let mut values = [0.0; CLASSES];
-                values[of] = weight(unit, quads.taxels() + offset);
-                values
-            })));
-        }
+            let of_extra = EXTRA_CLASSES.into_iter().zip(quads.taxels()..);
+            let words = of_window.chain(of_extra.map(|(class, input)| placed([(class, weight(unit, input))])));
+            words.enumerate().map(|(word, weights)| (word as u32, weights)).collect()
+        };
+        let hidden = FoldedRows { parity: 0, rows: hidden.iter().map(row).collect() };
         let output = output.each_ref().map(|weights| weights.iter().map(|of| step * f64::from(*of)).collect());
-        Self { half_window: *half_window, window, hidden: words, output }
+        Self { half_window: *half_window, window, hidden, output }
     }
 
     /// The correction, each component within [`LARGEST`].
@@ -79,34 +68,20 @@ impl Network {
     /// It is the mean over the mirror images of the contact, mirrored back: a mirrored contact gets the mirrored
     /// correction, exactly.
     pub(crate) fn correct(&self, features: &Features, scratch: &mut NetworkScratch) -> [f64; 2] {
-        let units = self.output[0].len();
-        for sums in &mut scratch.sums {
-            sums.clear();
-            sums.resize(units, 0.0);
-        }
-        scratch.inputs.clear();
-        scratch.inputs.extend(self.window.iter().map(|members| {
-            let mut values = [0.0; CLASSES];
-            for &(place, member) in members {
-                values[member] = features.values[place];
-            }
-            butterfly(values)
-        }));
-        let behind = features.values.len() - EXTRA_CLASSES.len();
-        scratch.inputs.extend(EXTRA_CLASSES.into_iter().enumerate().map(|(offset, of)| {
-            let mut values = [0.0; CLASSES];
-            values[of] = features.values[behind + offset];
-            values
-        }));
-        for (weights, inputs) in self.hidden.chunks(TOGETHER).zip(scratch.inputs.chunks(TOGETHER)) {
-            for (class, sums) in scratch.sums.iter_mut().enumerate() {
-                add(sums, weights, inputs, class);
-            }
-        }
-        let [a, b, c, d] = &scratch.sums;
+        let NetworkScratch { inputs, sums: of_units } = scratch;
+        inputs.clear();
+        inputs.extend(
+            self.window.iter().map(|members| {
+                butterfly(placed(members.iter().map(|&(place, member)| (member, features.values[place]))))
+            }),
+        );
+        let behind = &features.values[features.values.len() - EXTRA_CLASSES.len()..];
+        inputs.extend(EXTRA_CLASSES.into_iter().zip(behind).map(|(class, &value)| placed([(class, value)])));
+        of_units.resize(self.hidden.rows.len(), [0.0; CLASSES]);
+        self.hidden.times(inputs, of_units);
         let mut sums = [0.0; 2];
-        for unit in 0..units {
-            let images = butterfly([a[unit], b[unit], c[unit], d[unit]]).map(|sum| sum.max(0.0));
+        for (unit, &by_class) in of_units.iter().enumerate() {
+            let images = butterfly(by_class).map(|sum| sum.max(0.0));
             let [_, odd_x, odd_y, _] = butterfly(images);
             sums[0] += self.output[0][unit] * odd_x;
             sums[1] += self.output[1][unit] * odd_y;
@@ -115,28 +90,11 @@ impl Network {
     }
 }
 
-/// Adds a class of a few words to the units' sums, word after word.
-fn add(sums: &mut [f64], weights: &[[Vec<f64>; CLASSES]], inputs: &[[f64; CLASSES]], class: usize) {
-    if let ([a, b, c, d], [of_a, of_b, of_c, of_d]) = (weights, inputs) {
-        let weights = a[class].iter().zip(&b[class]).zip(c[class].iter().zip(&d[class]));
-        let [of_a, of_b, of_c, of_d] = [of_a, of_b, of_c, of_d].map(|of| of[class]);
-        for (sum, ((a, b), (c, d))) in sums.iter_mut().zip(weights) {
-            *sum = *sum + a * of_a + b * of_b + c * of_c + d * of_d;
-        }
-    } else {
-        for (weights, input) in weights.iter().zip(inputs) {
-            sums.iter_mut().zip(&weights[class]).for_each(|(sum, weight)| *sum += weight * input[class]);
-        }
-    }
-}
-
-/// What the units have by class, the units next to each other.
-fn by_class(units: impl Iterator<Item = [f64; CLASSES]>) -> [Vec<f64>; CLASSES] {
-    let mut classes: [Vec<f64>; CLASSES] = Default::default();
-    for unit in units {
-        classes.iter_mut().zip(unit).for_each(|(class, value)| class.push(value));
-    }
-    classes
+/// Four values, those that are given in their places.
+fn placed(values: impl IntoIterator<Item = (usize, f64)>) -> [f64; CLASSES] {
+    let mut all = [0.0; CLASSES];
+    values.into_iter().for_each(|(place, value)| all[place] = value);
+    all
 }
 
 #[cfg(test)]
