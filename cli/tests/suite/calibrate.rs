@@ -157,7 +157,7 @@ fn frames_of_another_order_are_told_of() {
 fn comments_and_order_of_a_design_file_stay() {
     let folder = TempDir::new().unwrap();
     let [pad, out, again] = ["pad.toml", "out.toml", "again.toml"].map(|name| folder.path().join(name));
-    let sensor = "# mine\n[sensor]\ncolumns = 6 # of them\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
+    let sensor = "# mine\n[sensor]\ncolumns = 4 # of them\nrows = 4\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
     let algorithm = "\n[algorithm]\n# no filter\nfilter = { kind = \"none\" }\nestimator = \"joint\"\n";
     fs::write(&pad, format!("# a pad\nformat = 3\nname = \"pad\"\n{sensor}{algorithm}")).unwrap();
     let calibrate = |from, to| {

@@ -101,11 +101,9 @@ fn several_contacts_change_no_hardware() {
 /// Deeper than 1.5 pitches a new design is regularised: without it there would be no hardware.
 #[test]
 fn a_new_design_of_a_deep_sensor_has_hardware() {
-    for depth in ["12", "16"] {
-        let design = new_design(&["--pitch-mm", "4", "4", "--depth-mm", depth]);
-        assert!(design.algorithm.regularisation.factor() > 0.0, "{depth} mm");
-        hdl_gen::plan::Plan::new(&design).unwrap();
-    }
+    let design = new_design(&["--pitch-mm", "4", "4", "--depth-mm", "16"]);
+    assert!(design.algorithm.regularisation.factor() > 0.0);
+    hdl_gen::plan::Plan::new(&design).unwrap();
 }
 
 /// What `sptfra new` writes with some options.
@@ -117,19 +115,20 @@ fn new_design(options: &[&str]) -> golden::design::Design {
 
 #[test]
 fn the_new_designs_values_are_the_defaults() {
-    let text = design_text("full", [10, 10], [4.0, 2.0], 3.0, "");
+    let text = design_text("full", [5, 4], [4.0, 2.0], 3.0, "");
     let mut defaults = golden::design::Design::from_toml(&text, "full.toml").unwrap();
     // But for the count of contacts, which designs without a word of it never had.
     defaults.algorithm.count_contacts = true;
     // And for each frame's own range, likewise.
     defaults.hardware.scaling = Scaling::PerFrame;
-    let line = new_design(&["--estimator", "line"]);
+    let small = ["--columns", "5", "--rows", "4"];
+    let line = new_design(&[&small[..], &["--estimator", "line"]].concat());
     assert!(line.algorithm.standard_error.is_some());
     defaults.algorithm.standard_error = line.algorithm.standard_error;
     defaults.algorithm.expected_error.clone_from(&line.algorithm.expected_error);
     assert_eq!(line, defaults);
     // And for the estimator, which is the better one.
-    let mut joint = new_design(&[]);
+    let mut joint = new_design(&small);
     assert_eq!(joint.algorithm.estimator, Estimator::Joint);
     (joint.algorithm.estimator, joint.algorithm.joint) = (Estimator::Line, defaults.algorithm.joint.clone());
     joint.algorithm.standard_error = defaults.algorithm.standard_error;

@@ -55,7 +55,7 @@ fn a_range_for_each_frame_and_counted_contacts_cost_some_latency() {
 #[test]
 fn a_new_design_tells_how_far_to_trust_it() {
     let of_depth = |depth: &str| {
-        let (said, design) = new(&["--columns", "8", "--rows", "8", "--pitch-mm", "4", "--depth-mm", depth]);
+        let (said, design) = new(&["--columns", "6", "--rows", "6", "--pitch-mm", "4", "--depth-mm", depth]);
         let text = said.split("expect the shear within ").nth(1).and_then(|rest| rest.split(" % of F_z").next());
         let told: f64 = text.expect("errors").parse().unwrap();
         let [found, _] = design.algorithm.expected_error.expect("errors").at(design.input.noise);

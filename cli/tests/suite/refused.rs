@@ -5,13 +5,13 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::generate::{contents, folder_with_design, good};
-use crate::support::{design_text, sptfra_in};
+use crate::support::{design_text, sptfra_in, without_progress};
 
 /// The one message of a command that fails, after a look that every file is as before.
 fn refused(folder: &Path, arguments: &[&str]) -> String {
     let before = contents(folder);
     let output = sptfra_in(folder, arguments);
-    let message = String::from_utf8(output.stderr).unwrap();
+    let message = without_progress(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{arguments:?}: {message}");
     assert!(output.stdout.is_empty(), "{arguments:?}");
     assert!(message.starts_with("error: ") && message.ends_with('\n') && message.lines().count() == 1, "{message}");
@@ -239,7 +239,11 @@ fn folders_that_cannot_be_written() {
     let message = refused(folder.path(), &["generate", "pad.toml", "--out", "/proc/hdl-gen/out"]);
     assert!(message.contains("/proc/hdl-gen") && message.contains("choose another folder"), "{message}");
     assert!(
-        refused(folder.path(), &["new", "other", "--paper-sensor", "1", "--dir", "/proc"]).contains("/proc/other.toml")
+        refused(
+            folder.path(),
+            &["new", "other", "--paper-sensor", "1", "--columns", "4", "--rows", "4", "--dir", "/proc"]
+        )
+        .contains("/proc/other.toml")
     );
 }
 

@@ -47,9 +47,15 @@ pub fn design_text(name: &str, size: [usize; 2], pitch_mm: [f64; 2], depth_mm: f
     )
 }
 
-/// Whether nothing was said but how far long work has come, which is logged every ten seconds.
-pub fn only_progress(stderr: &[u8]) -> bool {
-    let line =
+/// What was said but for how far long work has come, which is logged every ten seconds.
+pub fn without_progress(stderr: &[u8]) -> String {
+    let is_progress =
         |line: &str| line.strip_suffix(" s").is_some_and(|line| line.ends_with(|last: char| last.is_ascii_digit()));
-    String::from_utf8_lossy(stderr).lines().all(line)
+    let said = String::from_utf8_lossy(stderr);
+    said.lines().filter(|line| !is_progress(line)).map(|line| format!("{line}\n")).collect()
+}
+
+/// Whether nothing else was said.
+pub fn only_progress(stderr: &[u8]) -> bool {
+    without_progress(stderr).is_empty()
 }

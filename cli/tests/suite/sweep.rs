@@ -10,7 +10,7 @@ use serde_json::Value;
 use testbench::sweep::grid::{Axes, FilterAxis, jobs};
 use testbench::sweep::{SweepError, SweepScene};
 
-use crate::support::sptfra;
+use crate::support::{only_progress, sptfra};
 
 const SCENE: &str = "[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
     [medium]\nkind = \"half_space\"\n\
@@ -34,13 +34,7 @@ fn text(bytes: &[u8]) -> String {
 fn succeeds(arguments: &[&str]) -> String {
     let output = sptfra(arguments);
     assert!(output.status.success(), "{}", text(&output.stderr));
-    // A machine that is busy makes long work say how far it is, and for how many seconds.
-    let said = text(&output.stderr);
-    let is_progress = |line: &str| {
-        let seconds = line.rsplit_once(", ").and_then(|(_, last)| last.strip_suffix(" s"));
-        seconds.is_some_and(|seconds| seconds.parse::<u64>().is_ok())
-    };
-    assert!(said.lines().all(is_progress), "quiet off a terminal: {said}");
+    assert!(only_progress(&output.stderr), "quiet off a terminal: {}", text(&output.stderr));
     text(&output.stdout)
 }
 
