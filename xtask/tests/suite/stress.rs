@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::support::calibrated;
-use crate::support::effort::{share_of, some_of};
+use crate::support::effort::{all, half_of, share_of, some_of};
 use crate::support::faults::broken;
 use crate::support::{by_plan, in_parallel, planned, shipped, with_joint};
 use golden::design::{Design, Estimator, Outputs, Overrun, PlanKind};
@@ -12,6 +12,8 @@ use xtask::mutants::{self, Kind, mutants};
 use xtask::stress::{self, Commits, StressError, stress};
 
 const FRAMES: u64 = 3000;
+/// Of them `make test` sends so many to cores with banks, of which each is written once in some frames.
+const FEW_FRAMES: u64 = 1000;
 
 #[test]
 fn every_answer_is_right_and_none_is_lost() {
@@ -29,7 +31,7 @@ fn every_answer_is_right_and_none_is_lost() {
     ];
     let frames = share_of(FRAMES as usize) as u64;
     let options = stress::Options { frames, seed: 5 };
-    in_parallel(&designs, |design| {
+    in_parallel(&half_of(designs), |design| {
         let report = stress(design, &options, &Progress::hidden()).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(report.sent.total(), frames);
         assert_eq!(report.sent, report.answered.plus(report.lost_to_resets));
@@ -82,14 +84,15 @@ fn with_banks() -> Vec<Design> {
 /// acted when its frame began.
 #[test]
 fn no_frame_is_computed_with_half_a_bank() {
-    let options = stress::Options { frames: FRAMES, seed: 5 };
+    let frames = if all() { FRAMES } else { FEW_FRAMES };
+    let options = stress::Options { frames, seed: 5 };
     in_parallel(&with_banks(), |design| {
         let report = stress(design, &options, &Progress::hidden()).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(report.sent, report.answered.plus(report.dropped).plus(report.lost_to_resets));
         let Commits { banks, banks_refused, tares, tares_refused, lost_to_resets } =
             report.calibration.expect("in RAM");
-        assert!(banks > FRAMES / 40 && banks_refused > FRAMES / 100 && tares_refused > FRAMES / 200, "{report}");
-        assert!(tares > 5 && lost_to_resets > 0, "{report}");
+        assert!(banks > frames / 40 && banks_refused > frames / 100 && tares_refused > frames / 200, "{report}");
+        assert!(tares > frames / 500 && lost_to_resets > 0, "{report}");
         assert!(report.to_string().contains("banks acted"));
     });
 }
