@@ -1,8 +1,8 @@
 //! What is proved of which designs, and the broken copies whose proofs must fail.
 
-mod blocks;
+pub mod blocks;
 mod designs;
-mod handshakes;
+pub mod handshakes;
 
 use golden::design::Design;
 
