@@ -27,6 +27,7 @@ pub mod calibrate;
 pub mod check;
 pub mod choose;
 pub mod contacts;
+pub mod creep;
 pub mod crosstalk;
 pub mod dead_taxels;
 pub mod design;

@@ -15,7 +15,7 @@ newtons, `F_z < 0` presses. Whatever is wrong with a design, a file or frames ra
 
 from importlib.metadata import version as _version
 
-from ._native import Average, Design, Error, FrameLines, Solver, beyond, calibrate, check, errors, load_frames, rest, scene
+from ._native import Design, Error, FrameLines, Past, Solver, beyond, calibrate, check, errors, load_frames, rest, scene
 from .forces import Forces, Status
 from .hardware import generate, plan, simulate
 from .plot import plot_contacts, plot_field
@@ -26,13 +26,13 @@ from .results import Beyond, Finding, Plan, Recorded, Rest, Scene, Simulation, S
 __version__ = _version("sptfra")
 
 __all__ = [
-    "Average",
     "Beyond",
     "Design",
     "Error",
     "Finding",
     "Forces",
     "FrameLines",
+    "Past",
     "Plan",
     "Recorded",
     "Rest",

@@ -121,10 +121,10 @@ class Design:
         """The FPGA."""
 
 @final
-class Average:
-    """Average of a stream's frames, in a design with `sensor.smoothing`; empty at first."""
+class Past:
+    """What the frames of a stream leave to the next ones: averages and creep; empty at first."""
 
-    def __new__(cls) -> Average: ...
+    def __new__(cls) -> Past: ...
 
 @final
 class Solver:
@@ -136,7 +136,7 @@ class Solver:
         """The design that it was made for."""
 
     def solve(
-        self, frames: npt.ArrayLike, *, slips: bool | Forces | None = None, average: Average | None = None
+        self, frames: npt.ArrayLike, *, slips: bool | Forces | None = None, past: Past | None = None
     ) -> Forces:
         """Forces of frames that follow each other, on all cores, without Python's lock; Ctrl-C ends it.
 

@@ -18,7 +18,7 @@ from typing import BinaryIO
 
 import numpy as np
 
-from ._native import Average, Design, Error, FrameLines, Solver, check
+from ._native import Design, Error, FrameLines, Past, Solver, check
 from .forces import Forces
 from .plot import plot_field, pyplot
 
@@ -96,7 +96,7 @@ def run(design: Design, lines: Iterable[bytes], origin: str, labels: int, window
     """Solves the frame of each line and shows its forces."""
     reader, solver = FrameLines(design, labels=labels, origin=origin), Solver(design)
     number, forces, first = 0, None, []
-    average = Average()
+    past = Past()
     cut = None
     for index, line in enumerate(lines):
         try:
@@ -114,7 +114,7 @@ def run(design: Design, lines: Iterable[bytes], origin: str, labels: int, window
             first.append(frame)
         if number + 1 == LOOKED_AT:
             warn(design, first)
-        forces = solver.solve(frame, slips=forces, average=average)
+        forces = solver.solve(frame, slips=forces, past=past)
         if window is None:
             print(line_of(number, forces), flush=True)
         else:

@@ -34,5 +34,5 @@ mod native {
     #[pymodule_export]
     use super::recorded::{calibrate_forces, calibrate_uniform};
     #[pymodule_export]
-    use super::solver::{Average, Solver};
+    use super::solver::{Past, Solver};
 }

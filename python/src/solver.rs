@@ -3,8 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use golden::contacts::ContactForces;
-use golden::smoothing::Average as InnerAverage;
-use golden::solver::{PIECE, Slips, Solver as Inner, SolverError, Status};
+use golden::solver::{PIECE, Past as InnerPast, Slips, Solver as Inner, SolverError, Status};
 use pyo3::prelude::*;
 
 use crate::arrays::{Forces, Frames, Piece};
@@ -15,15 +14,15 @@ use crate::errors::{look_up, without_lock};
 const VALUES: usize = 1 << 18;
 const PIECES: usize = 4;
 
-/// Average of a stream's frames, in a design with smoothing.
+/// What the frames of a stream leave to the next ones, in a design with smoothing or creep.
 #[pyclass(frozen, module = "sptfra")]
 #[derive(Default)]
-pub struct Average {
-    inner: Mutex<InnerAverage>,
+pub struct Past {
+    inner: Mutex<InnerPast>,
 }
 
 #[pymethods]
-impl Average {
+impl Past {
     #[new]
     fn new() -> Self {
         Self::default()
@@ -53,27 +52,27 @@ impl Solver {
         self.design.clone_ref(py)
     }
 
-    #[pyo3(signature = (frames, *, slips = None, average = None))]
+    #[pyo3(signature = (frames, *, slips = None, past = None))]
     fn solve<'py>(
         &self,
         py: Python<'py>,
         frames: &Bound<'py, PyAny>,
         slips: Option<&Bound<'py, PyAny>>,
-        average: Option<&Average>,
+        past: Option<&Past>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let mut slips = slips.map_or(Ok(Slips::default()), slips_of)?;
         let design = &self.design.get().inner;
         let frames = Frames::of(design, frames)?;
-        let own = Average::default();
-        let average = &average.unwrap_or(&own).inner;
+        let own = Past::default();
+        let past = &past.unwrap_or(&own).inner;
         let forces = without_lock(py, || {
             let (records, has_field) = (self.inner.records(), self.inner.field_length() > 0);
             let mut forces = Forces::zeros(&design.sensor, frames.count(), records, has_field);
             let (mut pieces, taxels) = (forces.pieces().into_iter(), design.sensor.taxels());
-            let mut average = average.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut past = past.lock().unwrap_or_else(PoisonError::into_inner);
             let at_a_time = (VALUES / (PIECE * taxels)).max(PIECES * self.cores);
             for values in frames.values.chunks(at_a_time * PIECE * taxels) {
-                self.inner.solve_on_all_cores(values, &mut average, pieces.by_ref().take(at_a_time), Piece::put)?;
+                self.inner.solve_on_all_cores(values, &mut past, pieces.by_ref().take(at_a_time), Piece::put)?;
                 look_up(|_| Ok(()));
             }
             drop(pieces);

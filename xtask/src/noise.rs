@@ -38,6 +38,9 @@ pub enum NoiseError {
     /// The sensor's matrices, or a frame.
     #[error(transparent)]
     Solver(#[from] SolverError),
+    /// A step of load that does not tell creep.
+    #[error("{0}")]
+    Creep(String),
 }
 
 /// What the design's sensor reads of stresses in pascals, with noise in percent of the largest reading.

@@ -34,7 +34,7 @@ expected_error. The network's weights stand beside it, in RESOLVED.weights.csv. 
 /// With --frames and --forces: the scale of a count (a curve, a gain for all taxels, and the taxels' own), and the
 /// constants of friction where tangential forces are known. Reports what the recording determines, with errors at places
 /// that were left out, and what it does not, which stays as the design has it. With --uniform and --pressures: gains and
-/// curve from a bladder's pressure. Both may be given.
+/// curve from a bladder's pressure. With --constant-load: creep from a weight that stays. All may be given.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{CALIBRATE_FILES}"))]
 pub struct Args {
@@ -47,19 +47,19 @@ pub struct Args {
     #[command(flatten)]
     recordings: Recordings,
     /// Seed of the contacts and of the training.
-    #[arg(long, default_value_t = 1, conflicts_with_all = ["frames", "uniform"])]
+    #[arg(long, default_value_t = 1, conflicts_with_all = ["frames", "uniform", "constant_load"])]
     seed: u64,
     /// Training contacts: "sliding", round ones, or "general", of any shape, tilted, held; default: the design's.
-    #[arg(long, value_parser = word::<TrainingSet>(), conflicts_with_all = ["frames", "uniform"])]
+    #[arg(long, value_parser = word::<TrainingSet>(), conflicts_with_all = ["frames", "uniform", "constant_load"])]
     training_set: Option<TrainingSet>,
     /// Hidden units of the correction, 0 for none; default: 128, with "sliding" 64, with --quick 24.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256), conflicts_with_all = ["frames", "uniform"])]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256), conflicts_with_all = ["frames", "uniform", "constant_load"])]
     hidden: Option<u16>,
     /// Take a tenth of the time, for constants with twice the error.
-    #[arg(long, conflicts_with_all = ["frames", "uniform"])]
+    #[arg(long, conflicts_with_all = ["frames", "uniform", "constant_load"])]
     quick: bool,
     /// Take about ten times the time, for a network that is as exact with half of the hidden units.
-    #[arg(long, conflicts_with_all = ["frames", "uniform", "quick"])]
+    #[arg(long, conflicts_with_all = ["frames", "uniform", "constant_load", "quick"])]
     thorough: bool,
     /// Report as JSON.
     #[arg(long)]

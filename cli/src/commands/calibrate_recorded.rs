@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use golden::calibrate::recorded::{Recorded, fit_forces, fit_uniform, page, read_forces, read_pressures};
 use golden::check::check;
 use golden::choose::rebase_scenes;
+use golden::creep;
 use golden::design::{Design, Filter};
 use golden::frames::Frames;
 use golden::matrices::Matrices;
@@ -32,6 +33,9 @@ pub struct Recordings {
     /// Pressures measured with them (CSV or .npy), one line a frame.
     #[arg(long, value_name = "P.csv", requires = "uniform")]
     pressures: Option<PathBuf>,
+    /// Frames of a rest, then of a weight that is put on in one move and left, with a column of times: they tell creep.
+    #[arg(long, value_name = "FRAMES.csv")]
+    constant_load: Option<PathBuf>,
     #[command(flatten)]
     layout: LayoutArguments,
     /// Where to write a page with plots (HTML, complete in itself).
@@ -42,7 +46,11 @@ pub struct Recordings {
 impl Recordings {
     /// Whether there is anything recorded.
     pub fn given(&self) -> bool {
-        self.frames.is_some() || self.uniform.is_some() || self.page.is_some() || self.layout.given()
+        self.frames.is_some()
+            || self.uniform.is_some()
+            || self.constant_load.is_some()
+            || self.page.is_some()
+            || self.layout.given()
     }
 }
 
@@ -54,20 +62,23 @@ struct Report<'a> {
     uniform: Option<&'a Recorded>,
     #[serde(skip_serializing_if = "Option::is_none")]
     forces: Option<&'a Recorded>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    creep: Option<creep::Fitted>,
     next: String,
 }
 
 /// Fits the design in `path` to recordings and writes it to `out`.
 pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> message::Result {
-    let Recordings { frames, forces, uniform, pressures, layout, page: page_file } = recordings;
-    if frames.is_none() && uniform.is_none() {
+    let Recordings { frames, forces, uniform, pressures, constant_load, layout, page: page_file } = recordings;
+    if frames.is_none() && uniform.is_none() && constant_load.is_none() {
         return Err("--labels, --columns, --skip-lines, --skip-bad and --page are for recordings: give --frames and \
-             --forces, or --uniform and --pressures"
+             --forces, --uniform and --pressures, or --constant-load"
             .into());
     }
     let mut design = Design::load(path)?;
     let resolved = Resolved::anew(path, out)?;
-    let inputs: Vec<&Path> = [frames, forces, uniform, pressures].into_iter().flatten().map(AsRef::as_ref).collect();
+    let inputs: Vec<&Path> =
+        [frames, forces, uniform, pressures, constant_load].into_iter().flatten().map(AsRef::as_ref).collect();
     let outputs = resolved.all();
     for output in outputs.iter().chain(page_file) {
         keep_apart(output, &inputs)?;
@@ -79,6 +90,14 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
     }
     if let Some(name) = name_of(out) {
         design.name = name;
+    }
+    if design.input.creep.is_some() && (frames.is_some() || uniform.is_some()) {
+        return Err(format!(
+            "{}: sensor.creep: gains are fitted to readings as they come; remove the key, and find creep anew with \
+             --constant-load, in the same call or after it",
+            path.display()
+        )
+        .into());
     }
     let progress = Progress::of("fitting");
     let mut results: [Option<Recorded>; 2] = [None, None];
@@ -97,6 +116,10 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
         }
         design = found.design.clone();
         results[place] = Some(found);
+    }
+    let found_creep = constant_load.as_ref().map(|file| creep_of(file, layout, &design)).transpose()?;
+    if let Some(found) = &found_creep {
+        design.input.creep = Some(found.creep);
     }
     drop(progress);
     warn(&findings);
@@ -121,14 +144,42 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
                 out.with_extension("forces.csv").display()
             )
         }
+        None if constant_load.is_some() => {
+            format!("sptfra solve {} --frames FRAMES.csv --out FORCES.csv", out.display())
+        }
         None => {
             format!("sptfra calibrate {} --frames FRAMES.csv --forces FORCES.csv --out CHECKED.toml", out.display())
         }
     };
     let [uniform, forces] = &results;
-    let report =
-        Report { design: &design.name, resolved: out, uniform: uniform.as_ref(), forces: forces.as_ref(), next };
+    let report = Report {
+        design: &design.name,
+        resolved: out,
+        uniform: uniform.as_ref(),
+        forces: forces.as_ref(),
+        creep: found_creep,
+        next,
+    };
     Ok(json_or(&report, json, text)?.into())
+}
+
+/// Creep from a recording of constant load.
+fn creep_of(
+    file: &Path,
+    layout: &LayoutArguments,
+    design: &Design,
+) -> std::result::Result<creep::Fitted, Box<dyn std::error::Error>> {
+    let Frames { frames, times, .. } = Recording { file, layout: layout.layout() }.read_all(design)?;
+    let seconds = times.as_deref().and_then(|times| Some((times.last()? - times.first()?) / (times.len() - 1) as f64));
+    let Some(seconds) = seconds.filter(|&seconds| seconds > 0.0) else {
+        return Err(format!(
+            "{}: no column of times: name one before the values in the header, `time (s)` or `t (ms)`",
+            file.display()
+        )
+        .into());
+    };
+    let sums: Vec<f64> = frames.iter().map(|frame| design.stress_of(frame).iter().sum()).collect();
+    Ok(creep::fit(&sums, seconds).map_err(|problem| format!("{}: {problem}", file.display()))?)
 }
 
 fn text(report: &Report<'_>) -> String {
@@ -152,6 +203,17 @@ fn text(report: &Report<'_>) -> String {
                 say!(text, "    {line}");
             }
         }
+    }
+    if let Some(creep::Fitted { creep, held, rise, left }) = &report.creep {
+        say!(text, "from constant load: the readings rise by {:.1} % in {held:.1} s", 100.0 * rise);
+        say!(
+            text,
+            "  creep       strength {:.3}, time constant {:.2} s at {:.1} frames a second; corrected, readings vary by {:.1} %",
+            creep.strength,
+            creep.seconds,
+            creep.frames_per_second,
+            100.0 * left
+        );
     }
     say!(text, "next: {}", report.next);
     text

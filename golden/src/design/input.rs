@@ -11,6 +11,7 @@ use super::files::Beside;
 use super::hardware::Hardware;
 use super::keys::{DeadKey, SensorKeys};
 use super::rules;
+use crate::creep::Creep;
 use crate::smoothing::noise_left;
 use crate::words::print_as_words;
 
@@ -40,6 +41,8 @@ pub struct Input {
     pub noise: f64,
     /// Share of the sums of its row and of its column that a taxel reads beside its own stress; 0: none.
     pub crosstalk: f64,
+    /// Creep that is removed, if any.
+    pub creep: Option<Creep>,
     /// Frames are averaged with the weight `2^-k`; 0: they are not.
     pub smoothing: u32,
 }
@@ -55,6 +58,7 @@ impl Default for Input {
             tension: Tension::default(),
             noise: DEFAULT_NOISE,
             crosstalk: 0.0,
+            creep: None,
             smoothing: 0,
         }
     }
@@ -152,7 +156,8 @@ impl Input {
         hardware: &Hardware,
     ) -> Result<Self, DesignError> {
         rules::counts(check, &keys)?;
-        let SensorKeys { tension, noise, crosstalk, smoothing, pa_per_count, curve, calibration, dead, .. } = keys;
+        let SensorKeys { tension, noise, crosstalk, creep, smoothing, pa_per_count, curve, calibration, dead, .. } =
+            keys;
         let (crosstalk, smoothing) = (crosstalk.unwrap_or(0.0), smoothing.unwrap_or(0));
         let curve = curve.map(|curve| Curve::new(check, curve, beside, hardware)).transpose()?;
         let (dead, room) = match dead {
@@ -172,6 +177,6 @@ impl Input {
         dead.sort_unstable();
         dead.dedup();
         let noise = noise.share();
-        Ok(Self { pa_per_count, curve, calibration, dead, room, tension, noise, crosstalk, smoothing })
+        Ok(Self { pa_per_count, curve, calibration, dead, room, tension, noise, crosstalk, creep, smoothing })
     }
 }

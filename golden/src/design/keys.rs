@@ -13,6 +13,7 @@ use super::{
 };
 use super::{Tension, TrainingSet};
 use crate::contacts;
+use crate::creep::Creep;
 use crate::estimators::{Estimator, StandardError};
 use crate::kernel::Kernel;
 
@@ -66,6 +67,10 @@ pub(super) struct SensorKeys {
     /// taxel among them. The solver removes it exactly, in pascals, after gains and dead taxels.
     #[schemars(range(min = 0.0001, max = 0.1), extend("examples" = [0.02]))]
     pub crosstalk: Option<f64>,
+    /// Creep: readings that rise under constant load. Each taxel's own past corrects it, by one strength and one time constant
+    /// for all, which `sptfra calibrate --constant-load` finds.
+    #[schemars(extend("examples" = [{ "strength" : 0.4, "seconds" : 10.0, "frames_per_second" : 100.0 }]))]
+    pub creep: Option<Creep>,
     /// The k of an exponential moving average of each taxel over the frames, with the weight 2^-k. A step of any taxel by more
     /// than 6 standard deviations, `noise` times the frame's largest stress, restarts it. A frame that is short, not finite or
     /// dropped leaves it as it was. With `scaling = "per_frame"` the core answers 4 cycles later. With `control = true`

@@ -140,6 +140,7 @@ pub(super) fn keys(design: &Design, names: &FileNames) -> DesignKeys {
             tension: input.tension,
             noise: NoiseKey::Share(input.noise),
             crosstalk: Some(input.crosstalk).filter(|&share| share > 0.0),
+            creep: input.creep,
             smoothing: Some(input.smoothing).filter(|&k| k > 0),
             pa_per_count: input.pa_per_count,
             curve,

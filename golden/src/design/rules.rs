@@ -4,6 +4,7 @@ use super::checks::Check;
 use super::hardware::{CalibrationIn, Hardware, MAX_LANES, Optimise, Samples};
 use super::keys::SensorKeys;
 use super::{Algorithm, Design, DesignError, Estimator, Filter, MAX_NOISE, MAX_SIDE_PAPER, Outputs, PlanKind, Sensor};
+use crate::creep::FRAMES;
 use crate::dead_taxels::MOST_DEAD;
 
 /// Lanes of the reduced plan come in fours, one for each parity.
@@ -126,6 +127,7 @@ pub(super) fn input(check: &Check, design: &Design) -> Result<(), DesignError> {
     let (room, dead) = (input.room, input.dead.len());
     let most = MOST_DEAD.min(design.sensor.taxels() / 2);
     let in_ram = hardware.calibration == CalibrationIn::Ram;
+    let [fewest, longest] = FRAMES;
     refuse(
         check,
         [
@@ -142,6 +144,14 @@ pub(super) fn input(check: &Check, design: &Design) -> Result<(), DesignError> {
                 "sensor.noise",
                 format!("is {:.1} % of the largest reading", 100.0 * input.noise),
                 format!("shear needs at most {} %: press harder, or use a quieter sensor", 100.0 * MAX_NOISE),
+            ),
+            (
+                input.creep.is_some_and(|creep| !(fewest..=longest).contains(&creep.frames())),
+                "sensor.creep",
+                format!("has a time constant of {} frames", input.creep.map_or(0.0, |creep| creep.frames())),
+                format!(
+                    "seconds times frames_per_second is {fewest} to {longest}; send every nth frame, or remove the key"
+                ),
             ),
             (
                 input.smoothing > 0 && input.noise <= 0.0,

@@ -2,10 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::reading::Given;
+use super::reading::{Given, Past};
 use super::{Slips, Solution, Solver, SolverError, Status};
 use crate::contacts::ContactForces;
-use crate::smoothing::Average;
 
 /// Frames that one core takes at a time.
 pub const PIECE: usize = crate::products::batch::FRAMES;
@@ -16,7 +15,7 @@ impl Solver {
     ///
     /// Every [`PIECE`] frames have a place of their own among `places`, in order; `put` gets it with the frame's index in
     /// the piece and its solution, on whatever thread. The cores know nothing of each other's frames: let
-    /// [`Solver::follow_slips`] decide which slip. `average` is that of the frames before, and then of these.
+    /// [`Solver::follow_slips`] decide which slip. `past` is what the frames before have left, and then these.
     ///
     /// # Errors
     ///
@@ -24,7 +23,7 @@ impl Solver {
     pub fn solve_on_all_cores<P: Send>(
         &self,
         values: &[f64],
-        average: &mut Average,
+        past: &mut Past,
         places: impl IntoIterator<Item = P>,
         put: impl Fn(&mut P, usize, &Solution) + Sync,
     ) -> Result<(), SolverError> {
@@ -37,13 +36,13 @@ impl Solver {
             // Of a stream: what a batch needs would take longer than the frame.
             let mut solution = Solution::zeros(Status::default(), 0);
             let mut workspace = self.workspace();
-            std::mem::swap(&mut workspace.average, average);
+            std::mem::swap(&mut workspace.past, past);
             self.solve_into(&mut workspace, values, &mut solution)?;
-            *average = workspace.average;
+            *past = workspace.past;
             places.into_iter().take(1).for_each(|mut place| put(&mut place, 0, &solution));
             return Ok(());
         }
-        let decoded = self.reader.averages().then(|| self.averaged(average, values.chunks(taxels))).transpose()?;
+        let decoded = self.reader.follows().then(|| self.decoded(past, values.chunks(taxels))).transpose()?;
         let frames = match &decoded {
             Some(decoded) => decoded.given(),
             None => values.chunks(taxels).map(Given::Values).collect(),

@@ -19,6 +19,7 @@ mod workspace;
 
 pub use crate::status::Status;
 pub use cores::PIECE;
+pub use reading::Past;
 pub use separate::{CHANGE, REACH};
 pub use slips::Slips;
 pub use workspace::Workspace;

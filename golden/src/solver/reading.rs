@@ -4,10 +4,19 @@ use nalgebra::DVector;
 
 use super::cean::{self, Contact};
 use super::{SolverError, Status};
+use crate::creep::Creep;
 use crate::crosstalk::Crosstalk;
 use crate::dead_taxels::{DeadTaxels, GUESSED};
 use crate::design::{Design, Input, Tension};
 use crate::smoothing::{Average, Smoothing};
+
+/// What the frames of a stream leave to the next ones: how far each taxel has crept, and their average.
+#[derive(Clone, Debug, Default)]
+pub struct Past {
+    /// In pascals; empty before the first frame.
+    creep: Vec<f64>,
+    average: Average,
+}
 
 /// Reads the frames of one sensor.
 #[derive(Clone, Debug)]
@@ -15,6 +24,7 @@ pub(crate) struct Reader {
     input: Input,
     dead: DeadTaxels,
     crosstalk: Option<Crosstalk>,
+    creep: Option<Creep>,
     smoothing: Option<Smoothing>,
     positions: Vec<[f64; 2]>,
     noise_floor: f64,
@@ -29,7 +39,7 @@ pub(crate) struct Reader {
 pub(crate) enum Given<'a> {
     /// Values as the sensor delivers them.
     Values(&'a [f64]),
-    /// What [`Reader::decode`] and [`Reader::average`] have made of them.
+    /// What [`Reader::decode`] and [`Reader::follow`] have made of them.
     Decoded(&'a [f64], Status),
 }
 
@@ -53,6 +63,7 @@ impl Reader {
             input: design.input.clone(),
             dead: DeadTaxels::new(sensor, design.algorithm.kernel, &design.input.dead),
             crosstalk: design.crosstalk(),
+            creep: design.input.creep,
             smoothing: design.smoothing(),
             positions: (0..sensor.taxels()).map(|i| sensor.position_m(i)).collect(),
             noise_floor: design.algorithm.noise_floor_pa,
@@ -77,9 +88,9 @@ impl Reader {
         cean::cean(b, &self.positions, self.noise_floor)
     }
 
-    /// Whether frames are averaged.
-    pub(crate) fn averages(&self) -> bool {
-        self.smoothing.is_some()
+    /// Whether a frame depends on those before it.
+    pub(crate) fn follows(&self) -> bool {
+        self.creep.is_some() || self.smoothing.is_some()
     }
 
     /// Reads a frame into `b` of length m.
@@ -127,10 +138,17 @@ impl Reader {
         Ok(status)
     }
 
-    /// Takes a decoded frame into the average of its stream, which takes its place. A bad frame leaves the average as it was.
-    pub(crate) fn average(&self, average: &mut Average, status: Status, b: &mut [f64]) {
-        if let Some(smoothing) = self.smoothing.filter(|_| !status.contains(Status::NOT_FINITE)) {
-            smoothing.take(average, b, self.dead.taxels());
+    /// Takes the creep of its stream off a decoded frame, and puts the average in its place. A bad frame leaves both as they
+    /// were.
+    pub(crate) fn follow(&self, past: &mut Past, status: Status, b: &mut [f64]) {
+        if status.contains(Status::NOT_FINITE) {
+            return;
+        }
+        if let Some(creep) = &self.creep {
+            creep.remove(&mut past.creep, b, self.full_scale);
+        }
+        if let Some(smoothing) = &self.smoothing {
+            smoothing.take(&mut past.average, b, self.dead.taxels());
         }
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::batch::{self, BatchFrame};
-use super::reading::{Given, Reading};
+use super::reading::{Given, Past, Reading};
 use super::separate::{Counted, Separation};
 use super::{Estimate, Paper, Products, Reduced, Slips, Solution, Solver, SolverError, Status};
 use crate::estimators::{Contact, FrictionScratch, Seen};
@@ -13,7 +13,6 @@ use crate::parity::{CLASSES, Quads};
 use crate::products::batch::{Blocks, FRAMES};
 use crate::products::{Engine, PaperMatrices, ProductList, RealFrame, Stored};
 use crate::reduced::ReducedMatrices;
-use crate::smoothing::Average;
 
 /// Memory for solving frames with one solver; see [`Solver::workspace`].
 #[derive(Clone, Debug)]
@@ -28,13 +27,13 @@ pub struct Workspace {
     pub(super) separation: Separation,
     /// What slipped in the last frame.
     slips: Slips,
-    /// Average of the frames solved, in a design with smoothing.
-    pub(super) average: Average,
+    /// What the frames solved leave to the next ones.
+    pub(super) past: Past,
     /// For several frames at once, made when first used.
     batches: Batches,
 }
 
-/// Frames that are decoded and averaged.
+/// Frames that are decoded, without creep, and averaged.
 pub(super) struct Decoded {
     taxels: usize,
     stress: Vec<f64>,
@@ -76,7 +75,7 @@ impl Solver {
             },
             separation: Separation::default(),
             slips: Slips::default(),
-            average: Average::default(),
+            past: Past::default(),
             batches: Batches::default(),
         }
     }
@@ -84,7 +83,7 @@ impl Solver {
     /// As [`Solver::solve`], into a solution that is there already: after the first frame no memory is asked for.
     ///
     /// The workspace is that of this solver; that of another is replaced. Frames solved with one workspace follow each
-    /// other: whether a frame slips depends on the one before, and smoothing averages over them.
+    /// other: whether a frame slips depends on the one before, as do creep and averages.
     ///
     /// # Errors
     ///
@@ -97,7 +96,7 @@ impl Solver {
     ) -> Result<(), SolverError> {
         self.fit(workspace);
         let status = self.reader.decode(frame, workspace.b.as_mut_slice())?;
-        self.reader.average(&mut workspace.average, status, workspace.b.as_mut_slice());
+        self.reader.follow(&mut workspace.past, status, workspace.b.as_mut_slice());
         let reading = self.reader.judge(status, &workspace.b);
         self.solve_reading(workspace, &reading, solution);
         Ok(())
@@ -180,18 +179,18 @@ impl Solver {
         solutions: &mut Vec<Solution>,
     ) -> Result<(), SolverError> {
         self.fit(workspace);
-        if !self.reader.averages() {
+        if !self.reader.follows() {
             let given: Vec<Given<'_>> = frames.iter().map(|frame| Given::Values(frame.as_ref())).collect();
             return self.solve_given(workspace, &given, solutions);
         }
-        let decoded = self.averaged(&mut workspace.average, frames.iter().map(AsRef::as_ref))?;
+        let decoded = self.decoded(&mut workspace.past, frames.iter().map(AsRef::as_ref))?;
         self.solve_given(workspace, &decoded.given(), solutions)
     }
 
-    /// Decodes frames that follow each other, and averages them.
-    pub(super) fn averaged<'a>(
+    /// Decodes frames that follow each other: without creep, and averaged.
+    pub(super) fn decoded<'a>(
         &self,
-        average: &mut Average,
+        past: &mut Past,
         frames: impl Iterator<Item = &'a [f64]>,
     ) -> Result<Decoded, SolverError> {
         let taxels = self.taxels();
@@ -201,13 +200,13 @@ impl Solver {
             decoded.stress.resize(begin + taxels, 0.0);
             let stress = &mut decoded.stress[begin..];
             let status = self.reader.decode(frame, stress)?;
-            self.reader.average(average, status, stress);
+            self.reader.follow(past, status, stress);
             decoded.statuses.push(status);
         }
         Ok(decoded)
     }
 
-    /// As [`Solver::solve_batch`], of frames that smoothing is done with.
+    /// As [`Solver::solve_batch`], of frames that are decoded.
     pub(super) fn solve_given(
         &self,
         workspace: &mut Workspace,

@@ -5,7 +5,7 @@
 use golden::design::Design;
 use golden::scene::{Kind, normal};
 use golden::smoothing::{Average, RESTART, Smoothing};
-use golden::solver::{PIECE, Solution, Solver, Status};
+use golden::solver::{PIECE, Past, Solution, Solver, Status};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -127,13 +127,13 @@ fn frames_are_averaged_alike_however_they_are_solved() {
     }
     close(&together);
     // On all cores, in two calls and a single frame.
-    let mut average = Average::default();
+    let mut past = Past::default();
     let mut on_cores = vec![Solution::zeros(Status::default(), 0); frames.len()];
     for (begin, end) in [(0, 70), (70, 71), (71, frames.len())] {
         let places = on_cores[begin..end].chunks_mut(PIECE);
         let values = frames[begin..end].concat();
         solver
-            .solve_on_all_cores(&values, &mut average, places, |place, index, found| place[index].clone_from(found))
+            .solve_on_all_cores(&values, &mut past, places, |place, index, found| place[index].clone_from(found))
             .unwrap();
     }
     close(&on_cores);

@@ -5,8 +5,7 @@ use std::cell::Cell;
 
 use golden::design::{Correction, Design, Estimator, Filter, JointConstants, MatrixFilter, Outputs, PlanKind, Slip};
 use golden::estimators::line;
-use golden::smoothing::Average;
-use golden::solver::{PIECE, Slips, Solution, Solver, Status, co, op, we};
+use golden::solver::{PIECE, Past, Slips, Solution, Solver, Status, co, op, we};
 use nalgebra::DVector;
 
 /// Counts what this thread asks for; the other topics' tests run on other threads.
@@ -253,9 +252,9 @@ fn all_cores_give_what_one_gives() {
     assert!((1..frames.len()).contains(&slipping), "{slipping}");
     let mut found = vec![Solution::zeros(Status::default(), 0); frames.len()];
     let places = found.chunks_mut(PIECE);
-    let mut average = Average::default();
+    let mut past = Past::default();
     solver
-        .solve_on_all_cores(&frames.concat(), &mut average, places, |place, index, found| {
+        .solve_on_all_cores(&frames.concat(), &mut past, places, |place, index, found| {
             place[index].clone_from(found);
         })
         .unwrap();
@@ -270,10 +269,8 @@ fn all_cores_give_what_one_gives() {
     assert_eq!(found, expected);
     // A single one as if it had come alone.
     let mut alone = Solution::zeros(Status::default(), 0);
-    solver
-        .solve_on_all_cores(&frames[0], &mut average, [&mut alone], |place, _, found| place.clone_from(found))
-        .unwrap();
+    solver.solve_on_all_cores(&frames[0], &mut past, [&mut alone], |place, _, found| place.clone_from(found)).unwrap();
     assert_eq!(alone, solver.solve(&frames[0]).unwrap());
-    let said = solver.solve_on_all_cores(&[0.0; 21], &mut average, [()], |(), _, _| ()).unwrap_err().to_string();
+    let said = solver.solve_on_all_cores(&[0.0; 21], &mut past, [()], |(), _, _| ()).unwrap_err().to_string();
     assert!(said.contains("the frame has 1 values, the sensor 20 taxels"), "{said}");
 }

@@ -46,9 +46,9 @@ module sptfra_bz #(
     parameter [4:0] REPLACED_SHIFT = 5'd17,
     parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
         = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
-    // Crosstalk: see sptfra_corrections. Smoothing: see sptfra_frame_writer
-    parameter CROSSTALK = 0,
-    parameter [53:0] CROSSTALK_FACTORS = 54'd0,
+    // Crosstalk, creep: see sptfra_corrections. Smoothing: see sptfra_frame_writer
+    parameter [59:0] CROSSTALK = 60'd0,
+    parameter [45:0] CREEP = 46'd0,
     parameter [22:0] SMOOTHING = 23'd0,
     // Prefix of the ROM file names, and what they begin with
     parameter ROM_DIR = "",
@@ -121,7 +121,7 @@ module sptfra_bz #(
         if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
             sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
         end
-        if ((SAMPLES != 1) && ((REPLACEABLE | CROSSTALK | CALIBRATED) != 0)) begin : gen_check
+        if ((SAMPLES != 1) && ((REPLACEABLE | CALIBRATED) != 0 || {CROSSTALK, CREEP} != 0)) begin : gen_check
             sptfra_error_samples_go_one_by_one_where_frames_are_corrected_or_calibrated invalid ();
         end
         if ((EXPECTED_STAGES != 0) && (EXPECTED_STAGES != STAGES)) begin : gen_check_stages
@@ -316,7 +316,7 @@ module sptfra_bz #(
         .REPLACED_SHIFT    (REPLACED_SHIFT),
         .REPLACED_TAXELS   (REPLACED_TAXELS),
         .CROSSTALK         (CROSSTALK),
-        .CROSSTALK_FACTORS (CROSSTALK_FACTORS),
+        .CREEP             (CREEP),
         .SMOOTHING         (SMOOTHING),
         .ROM_DIR           (ROM_DIR),
         .ROM_NAME          (ROM_NAME)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Corrections of a whole frame: replaces its dead taxels, then removes crosstalk, where the design has them.
+// Corrections of a frame: replaces its dead taxels, then removes crosstalk, then creep, where the design has them.
 //
-// Without either a beat passes in the same cycle. Each keeps the frame until it is complete: see sptfra_replace and
-// sptfra_crosstalk.
+// Without any a beat passes in the same cycle. sptfra_replace and sptfra_crosstalk keep the frame until it is complete;
+// sptfra_creep takes 2 cycles.
 
 `default_nettype none
 
@@ -22,9 +22,10 @@ module sptfra_corrections #(
     parameter [4:0] REPLACED_SHIFT = 5'd17,
     parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
         = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
-    // Fraction bits of the factors of crosstalk, 0 without any, and the factors: see sptfra_crosstalk
-    parameter CROSSTALK = 0,
-    parameter [53:0] CROSSTALK_FACTORS = 54'd0, // of rows, columns, frame
+    // {fraction bits, factors of rows, columns and frame}, 0 without any: see sptfra_crosstalk
+    parameter [59:0] CROSSTALK = 60'd0,
+    // {strength, share}, 0 without any: see sptfra_creep
+    parameter [45:0] CREEP = 46'd0,
     // Prefix of the ROM file names, and what they begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
@@ -46,7 +47,7 @@ module sptfra_corrections #(
     input  wire [TAXEL_WIDTH-1:0] taxel_ahead,
     input  wire [34*PLACES+8:0] map,
     output wire replace_busy, // from a frame's last beat in to its last stress out
-    output wire crosstalk_busy,
+    output wire busy, // of crosstalk or creep
     // The same corrected
     output wire takes,
     output wire ends,
@@ -60,6 +61,11 @@ module sptfra_corrections #(
     wire whole_takes, whole_ends, whole_bad_length, whole_replaced;
     wire [27*SAMPLES-1:0] whole_stresses;
     wire [SAMPLES-1:0] whole_saturated, whole_not_finite;
+    wire apart_takes, apart_ends, apart_bad_length, apart_replaced, crosstalk_busy, creep_busy; // without crosstalk
+    wire [27*SAMPLES-1:0] apart_stresses;
+    wire [SAMPLES-1:0] apart_saturated, apart_not_finite;
+
+    assign busy = crosstalk_busy || creep_busy;
 
     generate
         if (REPLACEABLE != 0) begin : gen_replace
@@ -100,14 +106,14 @@ module sptfra_corrections #(
             wire _unused_map = &{1'b0, REPLACED_COUNT, REPLACED_SHIFT, REPLACED_TAXELS, MAPPED != 0, ROM_DIR != "",
                 ROM_NAME != "", taxel_ahead, map};
         end
-        if (CROSSTALK != 0) begin : gen_crosstalk
+        if (CROSSTALK != 60'd0) begin : gen_crosstalk
             sptfra_crosstalk #(
                 .COLUMNS       (COLUMNS),
                 .ROWS          (ROWS),
-                .ROW_FACTOR    (CROSSTALK_FACTORS[53:36]),
-                .COLUMN_FACTOR (CROSSTALK_FACTORS[35:18]),
-                .TOTAL_FACTOR  (CROSSTALK_FACTORS[17:0]),
-                .FRACTION      (CROSSTALK),
+                .ROW_FACTOR    (CROSSTALK[53:36]),
+                .COLUMN_FACTOR (CROSSTALK[35:18]),
+                .TOTAL_FACTOR  (CROSSTALK[17:0]),
+                .FRACTION      (CROSSTALK[59:54]),
                 .STRESS_BOUND  (STRESS_BOUND)
             ) crosstalk (
                 .clock          (clock),
@@ -118,20 +124,46 @@ module sptfra_corrections #(
                 .in_stress      (whole_stresses[26:0]),
                 .in_flags       ({whole_saturated[0], whole_not_finite[0], whole_replaced}),
                 .busy           (crosstalk_busy),
+                .out_takes      (apart_takes),
+                .out_ends       (apart_ends),
+                .out_bad_length (apart_bad_length),
+                .out_stress     (apart_stresses[26:0]),
+                .out_flags      ({apart_saturated[0], apart_not_finite[0], apart_replaced})
+            );
+        end else begin : gen_no_crosstalk
+            assign {apart_takes, apart_ends, apart_bad_length, apart_replaced, crosstalk_busy}
+                = {whole_takes, whole_ends, whole_bad_length, whole_replaced, 1'b0};
+            assign {apart_stresses, apart_saturated, apart_not_finite}
+                = {whole_stresses, whole_saturated, whole_not_finite};
+        end
+        if (CREEP != 46'd0) begin : gen_creep
+            sptfra_creep #(
+                .TAXELS       (TAXELS),
+                .STRENGTH     (CREEP[45:23]),
+                .SHARE        (CREEP[22:0]),
+                .STRESS_BOUND (STRESS_BOUND)
+            ) creep (
+                .clock          (clock),
+                .reset          (reset),
+                .in_takes       (apart_takes),
+                .in_ends        (apart_ends),
+                .in_bad_length  (apart_bad_length),
+                .in_stress      (apart_stresses[26:0]),
+                .in_flags       ({apart_saturated[0], apart_not_finite[0], apart_replaced}),
+                .busy           (creep_busy),
                 .out_takes      (takes),
                 .out_ends       (ends),
                 .out_bad_length (bad_length),
                 .out_stress     (stresses[26:0]),
                 .out_flags      ({saturated[0], not_finite[0], replaced})
             );
-        end else begin : gen_without
-            assign {takes, ends, bad_length, replaced, crosstalk_busy}
-                = {whole_takes, whole_ends, whole_bad_length, whole_replaced, 1'b0};
-            assign {stresses, saturated, not_finite} = {whole_stresses, whole_saturated, whole_not_finite};
-            wire _unused_crosstalk = &{1'b0, CROSSTALK_FACTORS};
+        end else begin : gen_no_creep
+            assign {takes, ends, bad_length, replaced, creep_busy}
+                = {apart_takes, apart_ends, apart_bad_length, apart_replaced, 1'b0};
+            assign {stresses, saturated, not_finite} = {apart_stresses, apart_saturated, apart_not_finite};
         end
-        if ((REPLACEABLE == 0) && (CROSSTALK == 0)) begin : gen_neither
-            wire _unused_neither = &{1'b0, clock, reset, STRESS_BOUND};
+        if ((REPLACEABLE == 0) && ({CROSSTALK, CREEP} == 0)) begin : gen_nothing
+            wire _unused_nothing = &{1'b0, clock, reset, STRESS_BOUND};
         end
     endgenerate
 

@@ -28,9 +28,9 @@ module sptfra_frame_writer #(
     parameter [4:0] REPLACED_SHIFT = 5'd17,
     parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
         = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
-    // Crosstalk: see sptfra_corrections
-    parameter CROSSTALK = 0,
-    parameter [53:0] CROSSTALK_FACTORS = 54'd0,
+    // Crosstalk, creep: see sptfra_corrections
+    parameter [59:0] CROSSTALK = 60'd0,
+    parameter [45:0] CREEP = 46'd0,
     // {fraction bits of the factor, factor} of a step that restarts the average, 0 without any: see sptfra_smoothing
     parameter [22:0] SMOOTHING = 23'd0,
     // Prefix of the ROM file names, and what they begin with
@@ -101,8 +101,8 @@ module sptfra_frame_writer #(
         end
     endgenerate
 
-    // ---- Dead taxels, crosstalk
-    wire crosstalk_busy, corrected_takes, corrected_ends, corrected_bad_length, corrected_replaced;
+    // ---- Dead taxels, crosstalk, creep
+    wire corrections_busy, corrected_takes, corrected_ends, corrected_bad_length, corrected_replaced;
     wire [27*SAMPLES-1:0] corrected;
     wire [SAMPLES-1:0] corrected_saturated, corrected_not_finite;
 
@@ -117,7 +117,7 @@ module sptfra_frame_writer #(
         .REPLACED_SHIFT    (REPLACED_SHIFT),
         .REPLACED_TAXELS   (REPLACED_TAXELS),
         .CROSSTALK         (CROSSTALK),
-        .CROSSTALK_FACTORS (CROSSTALK_FACTORS),
+        .CREEP             (CREEP),
         .ROM_DIR           (ROM_DIR),
         .ROM_NAME          (ROM_NAME)
     ) corrections (
@@ -132,7 +132,7 @@ module sptfra_frame_writer #(
         .taxel_ahead    (taxel_ahead),
         .map            (map),
         .replace_busy   (replace_busy),
-        .crosstalk_busy (crosstalk_busy),
+        .busy           (corrections_busy),
         .takes          (corrected_takes),
         .ends           (corrected_ends),
         .bad_length     (corrected_bad_length),
@@ -242,7 +242,7 @@ module sptfra_frame_writer #(
     wire [31:0] written_wide = {{(32-COUNT_WIDTH){1'b0}}, written};
 
     assign over = folded && (frame_done || told_before); // the lanes have it all, and CeAn its flags
-    assign busy = ended || crosstalk_busy || smoothing_busy;
+    assign busy = ended || corrections_busy || smoothing_busy;
     assign frame_saturated = seen_saturated || (takes && ((saturated & counted) != {SAMPLES{1'b0}}));
     assign frame_not_finite = seen_not_finite || (takes && ((not_finite & counted) != {SAMPLES{1'b0}}));
     assign frame_bad_length = ends ? bad_length_now : bad_length;

@@ -7,7 +7,8 @@ use crate::parameters::Parameters;
 use crate::plan::Plan;
 use crate::plan::calibration::{CalibrationPlan, CurveMap};
 use crate::plan::counts::{CountsPlan, EXPONENT_BITS};
-use crate::plan::crosstalk::{CrosstalkPlan, FACTOR_BITS};
+use crate::plan::creep;
+use crate::plan::crosstalk;
 use crate::plan::curve::{self, CurvePlan, SEGMENT_BITS};
 use crate::plan::dead::{DeadPlan, WEIGHT_BITS};
 use crate::plan::format::address_bits;
@@ -64,7 +65,11 @@ pub fn parameters(plan: &Plan) -> Parameters {
         None => parameters,
     };
     let parameters = match &plan.crosstalk {
-        Some(crosstalk) => of_crosstalk(parameters, crosstalk),
+        Some(of) => parameters.unsigned("CROSSTALK", crosstalk::PARAMETER_BITS, of.bits()),
+        None => parameters,
+    };
+    let parameters = match &plan.creep {
+        Some(of) => parameters.unsigned("CREEP", creep::PARAMETER_BITS, of.bits()),
         None => parameters,
     };
     let parameters = match &plan.smoothing {
@@ -99,7 +104,8 @@ pub fn arrival(plan: &Plan) -> Arrival {
     let samples = streams.conversions();
     let dead = if plan.places_for_dead() > 0 { latency::replacing(plan.taxels()) } else { 0 };
     let crosstalk = if plan.crosstalk.is_some() { latency::crosstalk(sensor) } else { 0 };
-    let there = |taxel: usize| (taxel / samples) as u64 + beat_to_stress(plan) + dead + crosstalk;
+    let creep = if plan.creep.is_some() { latency::CREEP } else { 0 };
+    let there = |taxel: usize| (taxel / samples) as u64 + beat_to_stress(plan) + dead + crosstalk + creep;
     let last = there(plan.taxels() - 1);
     // It is decided whether the average restarts.
     let decided = last + latency::SMOOTHING + latency::smoothing_decided(samples);
@@ -129,7 +135,7 @@ pub fn arrival(plan: &Plan) -> Arrival {
     }
 }
 
-/// A multiplier each for a count's slope, a stress's gain, each place for a dead taxel, crosstalk and smoothing.
+/// A multiplier each for a count's slope, a stress's gain, each place for a dead taxel, crosstalk and smoothing; two for creep.
 pub fn cost(plan: &Plan) -> BlockCost {
     let (streams, stress) = (plan.streams(), plan.factors().outside_bits());
     let (taxels, places) = (plan.taxels(), plan.places_for_dead());
@@ -155,6 +161,9 @@ pub fn cost(plan: &Plan) -> BlockCost {
         // With a stress, three flags.
         memories.push(memory("frame with crosstalk", 1, taxels, LONG_BITS + 3, false));
     }
+    if plan.creep.is_some() {
+        memories.push(memory("creep", 1, 2 << address_bits(taxels), creep::WORD_BITS, false));
+    }
     if plan.dead.is_some() {
         memories.push(memory("neighbours", 1, taxels, WEIGHT_BITS * places as u32, true));
     }
@@ -175,7 +184,10 @@ pub fn cost(plan: &Plan) -> BlockCost {
     let gain = plan.counts.is_some() || plan.calibration.is_some();
     let curve = plan.design.input.curve.is_some();
     let dsp = conversions * (usize::from(gain) + usize::from(curve)) + places;
-    let dsp = dsp + usize::from(plan.crosstalk.is_some()) + usize::from(plan.smoothing.is_some());
+    let dsp = dsp
+        + usize::from(plan.crosstalk.is_some())
+        + 2 * usize::from(plan.creep.is_some())
+        + usize::from(plan.smoothing.is_some());
     BlockCost::new("Bz", &["sptfra_bz"], dsp).with(memories)
 }
 
@@ -226,14 +238,6 @@ fn of_bank_curve(parameters: Parameters, map: &CurveMap) -> Parameters {
         .signed("CURVE_LAST", LONG_BITS, map.curve.last)
         .unsigned("CURVE_COUNT", 7, map.curve.segments.len() as u64)
         .signed("CURVE_LAST_VALUE", LONG_BITS, map.end)
-}
-
-fn of_crosstalk(parameters: Parameters, crosstalk: &CrosstalkPlan) -> Parameters {
-    parameters.number("CROSSTALK", crosstalk.fraction.into()).list(
-        "CROSSTALK_FACTORS",
-        FACTOR_BITS,
-        crosstalk.factors.iter().rev().map(|&factor| factor as u64),
-    )
 }
 
 /// Which taxels are replaced at power-up, in so many places.

@@ -271,6 +271,9 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     if plan.crosstalk.is_none() {
         without.push("sptfra_crosstalk");
     }
+    if plan.creep.is_none() {
+        without.push("sptfra_creep");
+    }
     if plan.smoothing.is_none() {
         without.push("sptfra_smoothing");
     }

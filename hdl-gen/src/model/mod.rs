@@ -47,6 +47,8 @@ pub struct Model<'plan> {
     /// Of a calibration in RAM, what acts, and how many have before it.
     bank: Option<Bank>,
     version: u8,
+    /// What readings have crept, taxel by taxel.
+    creep: Vec<i64>,
     average: Average,
     /// The weight of a frame in it is `2^-rate`.
     rate: u32,
@@ -57,7 +59,7 @@ impl<'plan> Model<'plan> {
     pub fn new(plan: &'plan Plan) -> Self {
         let bank = plan.calibration.as_ref().map(|calibration| calibration.power_up.clone());
         let rate = plan.smoothing.as_ref().map_or(0, |smoothing| smoothing.rate);
-        Self { plan, frames: 0, slips: false, bank, version: 0, average: Average::default(), rate }
+        Self { plan, frames: 0, slips: false, bank, version: 0, creep: Vec::new(), average: Average::default(), rate }
     }
 
     /// The bank that acts on the frames from now on, where the design's calibration is in RAM.
@@ -72,9 +74,10 @@ impl<'plan> Model<'plan> {
         self.rate = rate.min(MOST_RATE);
     }
 
-    /// As after a soft reset of the hardware: the frame counter and the average start again; calibration and rate stay.
+    /// As after a soft reset of the hardware: frame counter, creep and average start again; calibration and rate stay.
     pub fn reset(&mut self) {
         (self.frames, self.slips) = (0, false);
+        self.creep.clear();
         self.average = Average::default();
     }
 
@@ -110,6 +113,9 @@ impl<'plan> Model<'plan> {
         }
         if let Some(crosstalk) = &self.plan.crosstalk {
             crosstalk.remove(&mut stress, self.plan.formats.stress);
+        }
+        if let Some(creep) = &self.plan.creep {
+            creep.remove(&mut self.creep, &mut stress, self.plan.formats.stress);
         }
         let replaced = self.plan.dead.as_ref().or(self.bank.as_ref().map(|bank| &bank.dead.dead));
         let replaced = replaced.map_or(&[][..], |dead| &dead.taxels);

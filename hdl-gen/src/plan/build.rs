@@ -5,6 +5,7 @@ use golden::matrices::Matrices;
 
 use super::calibration::CalibrationPlan;
 use super::counts::CountsPlan;
+use super::creep::CreepPlan;
 use super::crosstalk::CrosstalkPlan;
 use super::dead::DeadPlan;
 use super::durations::durations;
@@ -105,6 +106,7 @@ impl Work {
             calibration: self.calibration.clone(),
             dead: self.dead.clone(),
             crosstalk: CrosstalkPlan::new(design),
+            creep: CreepPlan::new(design),
             smoothing: SmoothingPlan::new(design),
             thresholds: self.thresholds,
             estimator,

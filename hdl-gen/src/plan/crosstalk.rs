@@ -7,7 +7,9 @@ use super::format::{Format, largest, pow2, round_shift};
 use crate::cores::SHORT_BITS;
 
 /// Width of a factor: the shorter operand of a multiplier.
-pub const FACTOR_BITS: u32 = SHORT_BITS;
+const FACTOR_BITS: u32 = SHORT_BITS;
+/// Bits of [`CrosstalkPlan::bits`].
+pub const PARAMETER_BITS: u32 = 6 + 3 * FACTOR_BITS;
 
 /// What removes crosstalk: `stress - term(row) - (term(column) - term(frame))`, clipped to the full scale, where a term is
 /// `round(factor * floor(sum / 2^shift) / 2^fraction)`.
@@ -39,6 +41,12 @@ impl CrosstalkPlan {
         let fits = |&fraction: &u32| at(fraction).into_iter().all(|factor| factor <= largest(FACTOR_BITS));
         let fraction = (1..=40).rev().find(fits).unwrap_or(1);
         Some(Self { factors: at(fraction).map(|factor| factor as i32), fraction, shifts, columns })
+    }
+
+    /// As the hardware has it: the fraction bits above the factors.
+    pub fn bits(&self) -> u64 {
+        let of = |bits: u64, &factor: &i32| (bits << FACTOR_BITS) | u64::from(factor.unsigned_abs());
+        self.factors.iter().fold(self.fraction.into(), of)
     }
 
     /// Removes the crosstalk of a frame.

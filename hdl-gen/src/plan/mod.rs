@@ -6,6 +6,7 @@
 mod build;
 pub mod calibration;
 pub mod counts;
+pub mod creep;
 pub mod crosstalk;
 pub mod curve;
 mod curve_format;
@@ -43,6 +44,7 @@ use crate::estimators::EstimatorPlan;
 use crate::timing::Timeline;
 use calibration::CalibrationPlan;
 use counts::CountsPlan;
+use creep::CreepPlan;
 use crosstalk::CrosstalkPlan;
 use dead::DeadPlan;
 pub use error::PlanError;
@@ -117,6 +119,8 @@ pub struct Plan {
     pub dead: Option<DeadPlan>,
     /// What removes crosstalk, if the sensor has it.
     pub crosstalk: Option<CrosstalkPlan>,
+    /// What removes creep, if readings creep.
+    pub creep: Option<CreepPlan>,
     /// How frames are averaged, if they are.
     pub smoothing: Option<SmoothingPlan>,
     /// Status thresholds.

@@ -12,7 +12,7 @@ pub enum Intake {
     /// A beat is a sample.
     Single,
     /// A beat's samples are handed on one by one: where taxels are not folded, dead ones are replaced, crosstalk is
-    /// removed, or gains stand in RAM.
+    /// or creep is removed, or gains stand in RAM.
     Unpacked,
     /// All samples of a beat at once.
     Whole,
@@ -52,6 +52,7 @@ impl Streams {
         } else if design.algorithm.plan == PlanKind::Paper
             || !design.input.dead.is_empty()
             || design.input.crosstalk > 0.0
+            || design.input.creep.is_some()
             || design.hardware.calibration == CalibrationIn::Ram
         {
             Intake::Unpacked

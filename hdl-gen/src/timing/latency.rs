@@ -31,6 +31,9 @@ pub fn crosstalk(sensor: &Sensor) -> u64 {
     (sensor.taxels() + sensor.columns + sensor.rows) as u64 + 8
 }
 
+/// What removing creep adds.
+pub const CREEP: u64 = 2;
+
 /// From a stress to the average with it.
 pub const SMOOTHING: u64 = 4;
 /// From a frame's last average to the first element's turn, where no scale takes longer: the largest step of a beat is

@@ -1,12 +1,13 @@
-//! Averages over frames: RTL and model alike in all stream modes, among bad frames, steps and resets.
+//! Averages over frames, and creep: RTL and model alike in all stream modes, among bad frames, steps and resets.
 
 use crate::support::effort::some_of;
 use crate::support::faults::broken;
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint};
+use golden::creep::Creep;
 use golden::dead_taxels::DeadTaxels;
 use golden::design::{Design, Outputs, Overrun, PlanKind, Samples, Scaling};
 use golden::scene::normal;
-use golden::solver::Solver;
+use golden::solver::{Solution, Solver};
 use hdl_gen::model::{BAD_LENGTH, DROPPED, Model, NOT_FINITE};
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
@@ -19,9 +20,11 @@ use testbench::trial::{model_answers, timeout};
 use testbench::verilate::Built;
 
 const NOISE: f64 = 0.01;
+/// Within the frames of a contact it rises to most of what it adds.
+const CREEP: Creep = Creep { strength: 0.4, seconds: 0.03, frames_per_second: 100.0 };
 
-/// Both plans and estimators, both scalings, dead taxels and crosstalk, integers, beats of several samples at once and one by
-/// one.
+/// Both plans and estimators, both scalings, smoothing, creep or both, dead taxels and crosstalk, integers, beats of several
+/// samples at once and one by one.
 fn designs() -> Vec<Design> {
     let [paper, reduced] = [PlanKind::Paper, PlanKind::Reduced];
     let small = |name: &str, kind: PlanKind, outputs: Outputs, scaling: Scaling, smoothing: u32| {
@@ -37,6 +40,7 @@ fn designs() -> Vec<Design> {
     corrected.hardware.stream_bits = 128;
     corrected.input.crosstalk = 0.05;
     corrected.input.dead = vec![5];
+    corrected.input.creep = Some(CREEP);
     let mut counts = with_joint(small("counts", reduced, Outputs::Field, Scaling::PerFrame, 3));
     "smooth_counts".clone_into(&mut counts.name);
     (counts.sensor.columns, counts.sensor.rows) = (3, 5);
@@ -46,7 +50,9 @@ fn designs() -> Vec<Design> {
     let fixed = small("fixed", paper, Outputs::Field, Scaling::Fixed, 4);
     let mut wide = small("wide", reduced, Outputs::Field, Scaling::Fixed, 2);
     wide.hardware.stream_bits = 128;
-    vec![plain, of_paper, corrected, counts, fixed, wide]
+    let mut creeps = small("creeps", reduced, Outputs::Field, Scaling::PerFrame, 0);
+    creeps.input.creep = Some(CREEP);
+    vec![plain, of_paper, corrected, counts, fixed, wide, creeps]
 }
 
 /// Contacts that are held, with noise, and released; each frame as often as it takes to see both what is averaged and restarts.
@@ -241,14 +247,20 @@ fn steps_of_replaced_taxels_restart_nothing() {
 fn the_model_averages_as_the_solver_does() {
     for design in designs() {
         let mut alone = design.clone();
-        alone.input.smoothing = 0;
+        (alone.input.smoothing, alone.input.creep) = (0, None);
         let sent = packets(&planned(&design), 7);
         let error = |model: &Design, solver: &Design| {
             let plan = planned(model);
-            let answers: Vec<Answer> = model_answers(&plan, &sent).iter().filter_map(|words| decode(words)).collect();
+            let answers = model_answers(&plan, &sent).into_iter().filter_map(|words| decode(&words));
             let received = sent.iter().map(|packet| plan.streams().received(packet));
             let solver = Solver::new(&solver.solved_as_one()).expect("a solution");
-            SolverError::new(&answers, &solver.solve_in_order(received).expect("whole frames")).resultant_max
+            let solutions = solver.solve_in_order(received).expect("whole frames");
+            let force = |solution: &Solution| solution.resultant[2].abs();
+            let largest = solutions.iter().map(force).fold(0.0, f64::max);
+            // Where a contact and what fades of the one before cancel, a force has no scale.
+            let (answers, solutions): (Vec<Answer>, Vec<Solution>) =
+                answers.zip(solutions).filter(|(_, solution)| force(solution) > 0.02 * largest).unzip();
+            SolverError::new(&answers, &solutions).resultant_max
         };
         let [smoothed, without, mixed] = [error(&design, &design), error(&alone, &alone), error(&alone, &design)];
         println!("{}: {smoothed}, {without}, {mixed}", design.name);
@@ -294,11 +306,25 @@ fn faults_are_noticed() {
         ("rate_held <= rate;", "rate_held <= 4'd1;"),
         ("$signed({stress_1[26], stress_1, 9'h100}) - old_1", "$signed({stress_1[26], stress_1, 9'h000}) - old_1"),
     ]);
+    let of_creep = some_of([
+        ("if (good_ends) begin", "if (in_ends) begin"),
+        ("in_ends && !bad && !in_bad_length", "in_ends && !bad"),
+        ("in_ends && !bad && !in_bad_length", "in_ends && !in_bad_length"),
+        ("holds_1 ? kept_1 : HALF", "kept_1"),
+        ("            holds <= 1'b0;\n", ""),
+        ("!bank, place};", "bank, place};"),
+        ("{{27{1'b0}}, 1'b1, {(FRACTION-1){1'b0}}}", "{CREEP_BITS{1'b0}}"),
+        ("(stress_1 < -MOST)", "1'b0"),
+        ("- FRACTION - 1)", "- FRACTION)"),
+    ]);
     // A beat with four samples.
-    let plan = planned(&designs().swap_remove(3));
+    let [_, _, _, averages, .., creeps] = &designs()[..] else { unreachable!() };
+    let [averages, creeps] = [averages, creeps].map(planned);
     let [free, ..] = Mode::all(5);
-    let missed = in_parallel(&faults, |&(from, to)| {
-        with_resets(&plan, &broken(&plan, "sptfra_smoothing", from, to), &free).is_ok().then_some(from)
+    let faults = faults.into_iter().map(|fault| (&averages, "sptfra_smoothing", fault));
+    let faults: Vec<_> = faults.chain(of_creep.into_iter().map(|fault| (&creeps, "sptfra_creep", fault))).collect();
+    let missed = in_parallel(&faults, |&(plan, module, (from, to))| {
+        with_resets(plan, &broken(plan, module, from, to), &free).is_ok().then_some(from)
     });
     assert_eq!(missed.into_iter().flatten().collect::<Vec<_>>(), Vec::<&str>::new());
 }

@@ -6,8 +6,7 @@ use std::time::{Duration, Instant};
 
 use golden::design::{Design, PlanKind};
 use golden::progress::Progress;
-use golden::smoothing::Average;
-use golden::solver::{PIECE, Solution, Solver, SolverError, Status};
+use golden::solver::{PIECE, Past, Solution, Solver, SolverError, Status};
 use golden::table::Table;
 use nalgebra::DVector;
 use rand::{Rng, SeedableRng};
@@ -112,7 +111,7 @@ fn measure(path: &Path) -> Result<Report, Box<dyn Error>> {
     let mut found = vec![0.0; many];
     let on_all_cores = speed(many, || {
         let places = found.chunks_mut(PIECE);
-        solver.solve_on_all_cores(&values, &mut Average::default(), places, |place, index, solution| {
+        solver.solve_on_all_cores(&values, &mut Past::default(), places, |place, index, solution| {
             place[index] = solution.resultant[2];
         })
     })?;

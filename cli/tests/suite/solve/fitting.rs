@@ -199,3 +199,60 @@ fn one_command_fits_the_constants_to_a_changed_sensor() {
     assert_eq!(design.name, "pad_calibrated", "a design of its own");
     assert!(design.algorithm.joint.calibrated_for.is_some_and(|sensor| sensor.contains("4 x 4 mm")));
 }
+
+/// Readings of a weight that stays tell creep; solved with it, the force stays.
+#[test]
+fn a_weight_that_stays_tells_creep() {
+    let folder = TempDir::new().unwrap();
+    let [design, found, frames, forces] =
+        ["pad.toml", "found.toml", "load.csv", "forces.csv"].map(|name| folder.path().join(name));
+    let sensor = "[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\npa_per_count = -2.0\n";
+    fs::write(&design, format!("{PLAIN}name = \"pad\"\n{sensor}")).unwrap();
+    // 20 frames a second; a third in 15 s, with a time constant of 8 s.
+    let (strength, seconds) = (0.4, 8.0);
+    let mut added = [0.0; 12];
+    let mut lines = "time (s)".to_owned() + &(0..12).map(|taxel| format!(",p{taxel}")).collect::<String>() + "\n";
+    for frame in 0..900 {
+        let load = |taxel: usize| if frame < 30 { 0.0 } else { 300.0 * [0.2, 1.0, 0.9, 0.1][taxel % 4] };
+        let read: Vec<f64> = (0..12).map(|taxel| load(taxel) + added[taxel]).collect();
+        let noise = f64::from(frame * 7919 % 11) - 5.0;
+        lines += &format!("{:.2}", f64::from(frame) * 0.05);
+        lines += &read.iter().map(|read| format!(",{:.0}", read + 0.2 * noise)).collect::<String>();
+        lines += "\n";
+        for (taxel, added) in added.iter_mut().enumerate() {
+            *added += (1.0 - f64::exp(-0.05 / seconds)) * (strength * load(taxel) - *added);
+        }
+    }
+    fs::write(&frames, &lines).unwrap();
+    let calibrate = |more: &[&str]| {
+        let fixed = ["calibrate", text(&design), "--out", text(&found), "--constant-load", text(&frames)];
+        sptfra(&[&fixed, more].concat())
+    };
+    let output = calibrate(&["--labels", "1"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success() && said.contains("from constant load: the readings rise by 39."), "{said}");
+    assert!(said.contains("at 20.0 frames a second"), "{said}");
+    let creep = Design::load(&found).unwrap().input.creep.unwrap();
+    assert!((creep.strength - strength).abs() < 0.01 && (creep.seconds - seconds).abs() < 0.3, "{creep:?}");
+
+    let solved = |design: &Path| -> Vec<f64> {
+        let solve = ["solve", text(design), "--frames", text(&frames), "--labels", "1", "--out", text(&forces)];
+        assert!(sptfra(&solve).status.success());
+        let table = fs::read_to_string(&forces).unwrap();
+        let column = table.lines().next().unwrap().split(',').position(|name| name.starts_with("F_z")).unwrap();
+        table.lines().skip(1).map(|line| line.split(',').nth(column).unwrap().parse().unwrap()).collect()
+    };
+    let rise = |forces: &[f64]| forces[899] / forces[31] - 1.0;
+    let [without, with] = [&design, &found].map(|design| rise(&solved(design)));
+    assert!(without > 0.35 && with.abs() < 0.02, "{without} {with}");
+
+    // Without times, or with the key there already and weights to fit, the design is left alone.
+    let untimed: String = lines.lines().skip(1).map(|line| line.split_once(',').unwrap().1.to_owned() + "\n").collect();
+    fs::write(&frames, untimed).unwrap();
+    let refused = String::from_utf8(calibrate(&[]).stderr).unwrap();
+    assert!(refused.contains("no column of times"), "{refused}");
+    let weights =
+        ["calibrate", text(&found), "--out", text(&design), "--frames", text(&frames), "--forces", text(&frames)];
+    let refused = String::from_utf8(sptfra(&weights).stderr).unwrap();
+    assert!(refused.contains("sensor.creep") && refused.contains("--constant-load"), "{refused}");
+}

@@ -9,8 +9,7 @@ use golden::contacts::ContactForces;
 use golden::design::{Design, PlanKind, Slip};
 use golden::metrics::{ContactErrors, Quantiles};
 use golden::scene::SceneFrame;
-use golden::smoothing::Average;
-use golden::solver::{PIECE, Slips, Solution, Solver, Status};
+use golden::solver::{PIECE, Past, Slips, Solution, Solver, Status};
 use kinds::{Kind, frame};
 
 /// What a solver makes of frames: errors in percent of the normal force.
@@ -303,7 +302,7 @@ fn each_contact_slips_by_itself() {
     let mut on_cores = vec![Solution::zeros(Status::default(), 0); 4];
     let places = on_cores.chunks_mut(PIECE);
     solver
-        .solve_on_all_cores(&sequence.concat(), &mut Average::default(), places, |place, index, found| {
+        .solve_on_all_cores(&sequence.concat(), &mut Past::default(), places, |place, index, found| {
             place[index].clone_from(found);
         })
         .unwrap();

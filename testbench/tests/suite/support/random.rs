@@ -2,6 +2,7 @@
 
 use std::env;
 
+use golden::creep::Creep;
 use golden::design::{
     Calibration, CalibrationIn, Correction, Curve, Design, JointConstants, Kernel, Optimise, Outputs, Overrun,
     Regularisation, Samples, Scaling, Sensor, Slip, StandardError, Tension,
@@ -252,6 +253,10 @@ fn with_every_key(mut design: Design, random: &mut ChaCha8Rng) -> Result<Design,
     }
     if random.random_bool(0.25) {
         input.crosstalk = random.random_range(0.0005..0.1);
+    }
+    if random.random_bool(0.25) {
+        let [strength, seconds] = [random.random_range(0.01..1.0), random.random_range(0.02..0.5)];
+        input.creep = Some(Creep { strength, seconds, frames_per_second: 100.0 });
     }
     if random.random_bool(0.3) {
         (input.smoothing, input.noise) = (random.random_range(1..=8), 0.1);
