@@ -120,7 +120,8 @@ fn contacts_are_within_the_goals_too() {
         let design = design(name);
         let solver = Solver::new(&design).unwrap();
         for shape in [HERTZ, DISC] {
-            within(&solver, &centred(&design.sensor, LAYER, shape), [6.0, 3.0, 6.0], [8.0; 3], [2.1; 2]);
+            // Training with noise costs a tenth of a percent without it.
+            within(&solver, &centred(&design.sensor, LAYER, shape), [6.0, 3.1, 6.0], [8.0; 3], [2.1; 2]);
         }
         for (seed, normal) in [(SEED, [3.0, 3.1]), (OTHER_SEED, [3.5; 2])] {
             within(&solver, &inside(&design.sensor, LAYER, seed, 200), [7.0, 5.0, 7.0], [8.0; 3], normal);
