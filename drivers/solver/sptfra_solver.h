@@ -7,7 +7,7 @@
  *
  * The design states contacts = N: up to N contacts are separated. A frame is what went to the core: float32 or 16-bit
  * integers in taxel order, pascals or counts. Curve, calibration, dead taxels, crosstalk and clipped tension are the
- * design's. With smoothing a solver averages the frames in the order of its calls: give it every frame of one stream.
+ * design's. With smoothing or creep a solver follows the frames in the order of its calls: give it every frame of one stream.
  * A solver serves one thread at a time; several solvers serve several threads. */
 #ifndef SPTFRA_SOLVER_H
 #define SPTFRA_SOLVER_H
