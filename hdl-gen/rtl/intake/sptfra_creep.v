@@ -12,7 +12,7 @@
 module sptfra_creep #(
     // Of a frame
     parameter TAXELS = 100,
-    // {fraction bits, factor} of the strength, and of the share that creep goes on in a frame; 17 and more of the latter
+    // {fraction bits, factor}: of the strength; of the share that creep goes on in a frame, 18 fraction bits and more
     parameter [22:0] STRENGTH = {6'd17, 17'd52429},
     parameter [22:0] SHARE = {6'd27, 17'd67109},
     // Full scale: what a larger stress becomes
@@ -39,7 +39,7 @@ module sptfra_creep #(
 
     localparam FRACTION = 17; // of a creep, below a step of the stress
     localparam CREEP_BITS = 27 + FRACTION;
-    localparam [CREEP_BITS-1:0] HALF = {{27{1'b0}}, 1'b1, {(FRACTION-1){1'b0}}}; // so that it is rounded where it is cut
+    localparam [CREEP_BITS-1:0] HALF = {{27{1'b0}}, 1'b1, {(FRACTION-1){1'b0}}}; // of a step: rounds what is cut
     localparam signed [27:0] MOST = {STRESS_BOUND[26], STRESS_BOUND};
 
     // ---- Of the frame
@@ -103,7 +103,8 @@ module sptfra_creep #(
     wire signed [44:0] step_low_6, step_high_6; // the product is their sum
     wire signed [44:0] step_6 = step_low_6 + step_high_6;
     reg signed [CREEP_BITS-1:0] creep_2, creep_3, creep_4, creep_5, creep_6, creep_7;
-    wire signed [44:0] creep_on_6 = $signed({creep_6[CREEP_BITS-1], creep_6}) + (step_6 >>> (SHARE[22:17] - FRACTION - 1));
+    wire signed [44:0] creep_on_6 = $signed({creep_6[CREEP_BITS-1], creep_6})
+        + (step_6 >>> (SHARE[22:17] - FRACTION - 1));
     wire signed [44:0] cut_3 = end_3 >>> STRENGTH[22:17];
 
     assign way_4 = $signed({end_4[26], end_4}) - $signed({creep_4[CREEP_BITS-1], creep_4[CREEP_BITS-1:FRACTION]});

@@ -82,7 +82,13 @@ fn standing() -> Vec<Plan> {
     let more = "[hardware]\ncoefficient_bits = 27\ndata_bits = 35";
     plans.push(plan(&design_text("long_pad", [6, 4], [4.0, 4.0], 3.0, more)));
     plans.push(plan(&design_text("long_pad", [6, 4], [4.0, 4.0], 3.0, &format!("{more}\nstream_bits = 128"))));
-    plans.push(plan(&design_text("crosstalk_pad", [6, 4], [4.0, 4.0], 3.0, "crosstalk = 0.02\nsmoothing = 3\n")));
+    plans.push(plan(&design_text(
+        "crosstalk_pad",
+        [6, 4],
+        [4.0, 4.0],
+        3.0,
+        "crosstalk = 0.02\nsmoothing = 3\ncreep = { strength = 0.4, seconds = 9.0, frames_per_second = 100.0 }\n",
+    )));
     let more = "curve = { power = 1.25, scale = -0.5 }\n";
     plans.push(plan(&design_text("curved_pad", [6, 4], [4.0, 4.0], 3.0, more)));
     let more = "curve = { power = 1.25, scale = -0.5 }\ndead = { room = 8 }\nsmoothing = 4\n[hardware]\noverrun = \"drop\"\ncontrol = true\n\

@@ -2,6 +2,7 @@
 
 use crate::calibration;
 use crate::support::{by_plan, shipped, with_lanes};
+use golden::creep::Creep;
 use golden::design::{
     Calibration, CalibrationIn, Curve, Design, Estimator, Outputs, Overrun, PlanKind, Samples, Scaling, Slip, Tension,
 };
@@ -45,6 +46,7 @@ pub fn designs() -> Vec<Design> {
     "unpacked".clone_into(&mut unpacked.name);
     unpacked.hardware.stream_bits = 64;
     (unpacked.input.smoothing, unpacked.input.crosstalk) = (3, 0.02);
+    unpacked.input.creep = Some(Creep { strength: 0.4, seconds: 9.0, frames_per_second: 100.0 });
     let mut wide_control = by_plan(shipped("small-control"), reduced, Outputs::Resultants);
     "wide_control".clone_into(&mut wide_control.name);
     wide_control.hardware.stream_bits = 64;
