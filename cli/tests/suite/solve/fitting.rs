@@ -216,7 +216,7 @@ fn a_weight_that_stays_tells_creep() {
         let load = |taxel: usize| if frame < 30 { 0.0 } else { 300.0 * [0.2, 1.0, 0.9, 0.1][taxel % 4] };
         let read: Vec<f64> = (0..12).map(|taxel| load(taxel) + added[taxel]).collect();
         let noise = f64::from(frame * 7919 % 11) - 5.0;
-        lines += &format!("{:.2}", f64::from(frame) * 0.05);
+        lines += &(f64::from(frame) * 0.05).to_string();
         lines += &read.iter().map(|read| format!(",{:.0}", read + 0.2 * noise)).collect::<String>();
         lines += "\n";
         for (taxel, added) in added.iter_mut().enumerate() {

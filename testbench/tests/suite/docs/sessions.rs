@@ -166,6 +166,20 @@ fn recording(frames: &[SceneFrame]) -> (Vec<Vec<f64>>, String) {
     (stress, weights)
 }
 
+/// Counts of a scanner at rest, then under a weight that stays for a minute: they rise by a third, with a time constant of 10 s.
+fn constant_load(taxels: usize) -> String {
+    let mut text = "t (s)".to_owned() + &(0..taxels).map(|taxel| format!(",p{taxel}")).collect::<String>() + "\n";
+    for (frame, counts) in unloaded(taxels).iter().cycle().take(640).enumerate() {
+        let second = frame as f64 / 10.0;
+        let crept = 1.0 + 0.4 * (1.0 - f64::exp((4.0 - second) / 10.0));
+        let load = if second < 4.0 { 0.0 } else { (1000.0 * crept).round() };
+        text += &second.to_string();
+        text += &counts.iter().map(|count| format!(",{}", count + load)).collect::<String>();
+        text.push('\n');
+    }
+    text
+}
+
 /// An array of `NumPy`'s format, version 1.0.
 fn npy(frames: &[Vec<f64>]) -> Vec<u8> {
     let shape = format!("({}, {})", frames.len(), frames[0].len());
@@ -207,12 +221,14 @@ fn prepare(session: &Session) {
     fs::write(session.file("p.csv"), format!("pressure (Pa)\n{column}")).expect("written");
     fs::copy(design_file("small-scanner"), session.file("scanner.toml")).expect("copied");
     golden::frames::write_frames(&session.file("unloaded.csv"), &unloaded(12)).expect("written");
+    fs::write(session.file("load.csv"), constant_load(12)).expect("written");
     // A board of one's own.
     fs::copy(workspace("hdl-gen/boards/zcu102.toml"), session.file("my-carrier.toml")).expect("copied");
 }
 
 /// What the pages' commands make.
-const MADE: [&str; 10] = [
+const MADE: [&str; 11] = [
+    "scanner-creep.toml",
     "pad-june.toml",
     "pad-july.toml",
     "june.html",
@@ -263,7 +279,7 @@ fn the_commands_of_the_docs_run() {
         ("look-at-frames.md", vec!["frame.svg"]),
         ("sensor-without-tension.md", vec![]),
         ("several-contacts.md", vec!["forces.csv"]),
-        ("tare-and-noise.md", vec!["scanner.calibration.csv"]),
+        ("tare-and-noise.md", vec!["scanner-creep.toml", "scanner.calibration.csv"]),
         ("vivado.md", vec![]),
         ("generated-folder.md", vec!["second/rtl/v2_sptfra_rom.v"]),
         ("first-forces.md", vec!["forces.csv", "board-folder/metadata.json"]),
