@@ -230,7 +230,7 @@ fn a_weight_that_stays_tells_creep() {
     };
     let output = calibrate(&["--labels", "1"]);
     let said = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success() && said.contains("from constant load: the readings rise by 39."), "{said}");
+    assert!(output.status.success() && said.contains("from constant load: the readings rise by 40."), "{said}");
     assert!(said.contains("at 20.0 frames a second"), "{said}");
     let creep = Design::load(&found).unwrap().input.creep.unwrap();
     assert!((creep.strength - strength).abs() < 0.01 && (creep.seconds - seconds).abs() < 0.3, "{creep:?}");
