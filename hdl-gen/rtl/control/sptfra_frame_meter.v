@@ -14,6 +14,7 @@ module sptfra_frame_meter (
     input  wire out_taken,
     input  wire out_last,
     input  wire [31:0] out_word,
+    input  wire dropped, // a frame, for one cycle
     // Figures
     output reg  [31:0] frames_in,
     output reg  [31:0] frames_out,
@@ -21,6 +22,7 @@ module sptfra_frame_meter (
     output reg  [31:0] last_status,
     output reg  [31:0] last_latency,
     output reg  [31:0] last_interval,
+    output reg  [31:0] frames_dropped,
     // For one cycle, after a frame's last beat
     output reg  frame_done,
     output reg  frame_error
@@ -58,6 +60,7 @@ module sptfra_frame_meter (
                 status <= out_word;
             end
         end
+        frames_dropped <= frames_dropped + {31'd0, dropped};
         frame_done <= frame_ends;
         frame_error <= frame_ends && faulty;
         if (frame_ends) begin
@@ -83,6 +86,7 @@ module sptfra_frame_meter (
             last_status <= 32'd0;
             last_latency <= 32'd0;
             last_interval <= 32'd0;
+            frames_dropped <= 32'd0;
             frame_done <= 1'b0;
             frame_error <= 1'b0;
         end

@@ -31,6 +31,10 @@ module sptfra_registers #(
     parameter [0:0] IS_REDUCED = 1'd1,
     // Frames hold counts, else pascals
     parameter [0:0] HAS_COUNTS = 1'd0,
+    // Frames that find no room are dropped
+    parameter [0:0] DROPS = 1'd0,
+    // k of the average over frames after reset, 1 to 8; 0: frames are not averaged
+    parameter [3:0] SMOOTHING_RATE = 4'd0,
     // Bytes of a beat on either stream
     parameter [7:0] STREAM_BYTES = 8'd4,
     // A sample is: 0 float32, 1 int16, 2 uint16
@@ -67,10 +71,13 @@ module sptfra_registers #(
     input  wire [31:0] last_status,
     input  wire [31:0] last_latency,
     input  wire [31:0] last_interval,
+    input  wire [31:0] frames_dropped,
     input  wire frame_done,
     input  wire frame_error,
     input  wire bad_access,
-    output reg  irq
+    output reg  irq,
+    // k from the next frame on, 8 at most
+    output wire [3:0] smoothing
 );
 
     generate
@@ -109,15 +116,22 @@ module sptfra_registers #(
     localparam [9:0] LAST_STATUS = 10'd23;
     localparam [9:0] LAST_LATENCY = 10'd24;
     localparam [9:0] LAST_INTERVAL = 10'd25;
+    localparam [9:0] FRAMES_DROPPED = 10'd26;
+    localparam [9:0] SMOOTHING = 10'd27;
+    localparam [0:0] AVERAGES = (SMOOTHING_RATE != 4'd0);
 
     reg [2:0] enabled;
     reg [2:0] pending;
+    reg [3:0] rate;
 
     // Constants to word 10, the rest from word 16 on
     assign write_mapped = (write_word <= PREDICTED_INTERVAL)
-        || ((write_word >= CONTROL) && (write_word <= LAST_INTERVAL));
+        || ((write_word >= CONTROL) && (write_word <= LAST_INTERVAL))
+        || (DROPS && (write_word == FRAMES_DROPPED)) || (AVERAGES && (write_word == SMOOTHING));
     assign read_mapped = (read_word <= PREDICTED_INTERVAL)
-        || ((read_word >= CONTROL) && (read_word <= LAST_INTERVAL));
+        || ((read_word >= CONTROL) && (read_word <= LAST_INTERVAL))
+        || (DROPS && (read_word == FRAMES_DROPPED)) || (AVERAGES && (read_word == SMOOTHING));
+    assign smoothing = rate[3] ? 4'd8 : rate;
 
     // ---- Reads
     always @(*) begin
@@ -128,7 +142,8 @@ module sptfra_registers #(
             HASH_HIGH: read_data = HASH[63:32];
             GEOMETRY: read_data = {8'd0, LANES, ROWS, COLUMNS};
             FRAME: read_data = {WORDS_OUT, WORDS_IN};
-            FEATURES: read_data = {14'd0, SAMPLES, STREAM_BYTES, 5'd0, HAS_COUNTS, IS_REDUCED, HAS_FIELD};
+            FEATURES: read_data = {14'd0, SAMPLES, STREAM_BYTES, AVERAGES, 1'b0, DROPS, 2'd0,
+                HAS_COUNTS, IS_REDUCED, HAS_FIELD};
             CLOCK: read_data = CLOCK_KHZ;
             FULL_SCALE_PASCALS: read_data = FULL_SCALE;
             PREDICTED_LATENCY: read_data = LATENCY_CYCLES;
@@ -142,6 +157,8 @@ module sptfra_registers #(
             LAST_STATUS: read_data = last_status;
             LAST_LATENCY: read_data = last_latency;
             LAST_INTERVAL: read_data = last_interval;
+            FRAMES_DROPPED: read_data = DROPS ? frames_dropped : 32'd0;
+            SMOOTHING: read_data = AVERAGES ? {28'd0, rate} : 32'd0;
             default: read_data = 32'd0; // CONTROL reads as zero
         endcase
     end
@@ -157,6 +174,9 @@ module sptfra_registers #(
         if (write_enable && (write_word == INTERRUPT_ENABLE)) begin
             enabled <= (enabled & ~write_mask[2:0]) | ones;
         end
+        if (write_enable && (write_word == SMOOTHING)) begin
+            rate <= (rate & ~write_mask[3:0]) | (write_data[3:0] & write_mask[3:0]);
+        end
         // An event in the cycle in which its bit is cleared is not lost
         pending <= (pending & ~cleared) | events;
         irq <= ((pending & enabled) != 3'd0);
@@ -164,10 +184,11 @@ module sptfra_registers #(
             enabled <= 3'd0;
             pending <= 3'd0;
             irq <= 1'b0;
+            rate <= SMOOTHING_RATE;
         end
     end
 
-    wire _unused = &{1'b0, write_data[31:3], write_mask[31:3]};
+    wire _unused = &{1'b0, write_data[31:4], write_mask[31:4]};
 
 endmodule
 

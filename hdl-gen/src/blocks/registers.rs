@@ -51,6 +51,8 @@ impl Constants {
             decimal("HAS_FIELD", 1, &u8::from(plan.field_words() > 0)),
             decimal("IS_REDUCED", 1, &u8::from(plan.ways() > 1)),
             decimal("HAS_COUNTS", 1, &u8::from(design.input.counts())),
+            decimal("DROPS", 1, &u8::from(plan.streams().drops)),
+            decimal("SMOOTHING_RATE", 4, &plan.smoothing.as_ref().map_or(0, |of| of.rate)),
             decimal("STREAM_BYTES", 8, &(plan.streams().bits / 8)),
             decimal("SAMPLES", 2, &samples(plan)),
             decimal("CLOCK_KHZ", 32, &((hardware.clock_mhz * 1e3).round() as u64)),
