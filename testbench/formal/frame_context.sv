@@ -34,13 +34,10 @@ module harness (
     wire [4:0] exponent;
     wire [31:0] now;
     wire in_frame;
-    wire [3:0] newest;
-    wire [3:0] oldest;
-    wire [3:0] next_calibrated;
-    wire [3:0] next_cean;
     wire [58:0] thresholds;
-    wire [3:0] next_scaled;
-    wire [3:0] next_direction;
+    // Of each field, in this order: where the next word goes, and where the oldest stands
+    wire [4*5-1:0] newest;
+    wire [4*5-1:0] oldest;
     wire [33*16-1:0] beginnings;
     wire [59*16-1:0] for_cean;
     wire [12*16-1:0] versions;
@@ -74,13 +71,17 @@ module harness (
         // Inside
         .now      (now),
         .in_frame (in_frame),
-        .newest   (newest),
-        .oldest   (oldest),
-        .\gen_calibration.next_calibrated (next_calibrated),
-        .\gen_calibration.next_cean (next_cean),
         .\gen_calibration.thresholds (thresholds),
-        .\gen_scale.next_scaled (next_scaled),
-        .\gen_scale.next_direction (next_direction),
+        .\beginnings.newest_place (newest[3:0]),
+        .\beginnings.oldest_place (oldest[3:0]),
+        .\gen_calibration.for_cean.newest_place (newest[7:4]),
+        .\gen_calibration.for_cean.oldest_place (oldest[7:4]),
+        .\gen_calibration.for_output.newest_place (newest[11:8]),
+        .\gen_calibration.for_output.oldest_place (oldest[11:8]),
+        .\gen_scale.for_direction.newest_place (newest[15:12]),
+        .\gen_scale.for_direction.oldest_place (oldest[15:12]),
+        .\gen_scale.for_output.newest_place (newest[19:16]),
+        .\gen_scale.for_output.oldest_place (oldest[19:16]),
         .\beginnings.words (beginnings),
         .\gen_calibration.for_cean.words (for_cean),
         .\gen_calibration.for_output.words (versions),
@@ -231,12 +232,9 @@ module harness (
             assert (to_pop == inside - to_scale - scaled_ahead);
             assert (in_frame == open);
             assert (now == clock_count);
-            assert (newest == pushed[3:0]);
-            assert (oldest == popped[3:0]);
-            assert (next_calibrated == with_calibration[3:0]);
-            assert (next_cean == measured[3:0]);
-            assert (next_scaled == with_scale[3:0]);
-            assert (next_direction == directed[3:0]);
+            assert (newest == {with_scale[3:0], with_scale[3:0], with_calibration[3:0], with_calibration[3:0],
+                pushed[3:0]});
+            assert (oldest == {popped[3:0], directed[3:0], popped[3:0], measured[3:0], popped[3:0]});
             assert (!is_inside || (beginning_there == {its_dropped, its_timestamp}));
             assert (({1'b0, place} >= is_calibrated) || (thresholds_there == {its_contact, its_noise}));
             assert (({1'b0, place} >= is_calibrated) || (version_there == {its_version, its_replaced}));

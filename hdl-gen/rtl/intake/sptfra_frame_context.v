@@ -4,7 +4,7 @@
 // Frame-context FIFO: what a frame carries beside its numbers, from its first beat to the output. Sixteen frames deep.
 //
 // A context is pushed with a frame's first beat, and popped when the output stage begins the frame. All stages see the
-// frames in one order, so each field has a write pointer, and each reader a read pointer:
+// frames in one order, so each field is a FIFO for each of its readers:
 //
 // | field              | written                 | read              |
 // |--------------------|-------------------------|-------------------|
@@ -57,13 +57,11 @@ module sptfra_frame_context #(
     output wire [4:0] exponent
 );
 
-    // ---- Pushed with the first beat, popped by the output
+    // ---- First beats
     localparam BEGIN_BITS = (DROPS != 0) ? 33 : 32;
 
     reg [31:0] now;
     reg in_frame;
-    reg [3:0] newest;
-    reg [3:0] oldest;
     wire begins = in_taken && !in_frame;
     wire [32:0] begins_with = {in_dropped, now};
     wire [BEGIN_BITS-1:0] began_with;
@@ -71,15 +69,15 @@ module sptfra_frame_context #(
     assign timestamp = began_with[31:0];
     assign dropped = (DROPS != 0) && began_with[BEGIN_BITS-1];
 
-    sptfra_context_words #(
+    sptfra_context_field #(
         .WIDTH (BEGIN_BITS)
     ) beginnings (
-        .clock       (clock),
-        .write       (begins),
-        .write_frame (newest),
-        .write_data  (begins_with[BEGIN_BITS-1:0]),
-        .read_frame  (oldest),
-        .read_data   (began_with)
+        .clock      (clock),
+        .reset      (reset),
+        .write      (begins),
+        .write_data (begins_with[BEGIN_BITS-1:0]),
+        .take       (take),
+        .oldest     (began_with)
     );
 
     always @(posedge clock) begin
@@ -87,65 +85,45 @@ module sptfra_frame_context #(
         if (in_taken) begin
             in_frame <= !in_last;
         end
-        if (begins) begin
-            newest <= newest + 4'd1;
-        end
-        if (take) begin
-            oldest <= oldest + 4'd1;
-        end
         if (reset) begin
             now <= 32'd1;
             in_frame <= 1'b0;
-            newest <= 4'd0;
-            oldest <= 4'd0;
         end
     end
 
     // ---- Calibration
     generate
         if (CALIBRATED != 0) begin : gen_calibration
-            reg [3:0] next_calibrated;
-            reg [3:0] next_cean;
             wire [58:0] of_cean;
             reg [58:0] thresholds;
 
             assign {contact, noise} = thresholds;
 
-            sptfra_context_words #(
-                .WIDTH (59)
-            ) for_cean (
-                .clock       (clock),
-                .write       (calibrated),
-                .write_frame (next_calibrated),
-                .write_data  ({in_contact, in_noise}),
-                .read_frame  (next_cean),
-                .read_data   (of_cean)
-            );
-
-            sptfra_context_words #(
-                .WIDTH (12)
-            ) for_output (
-                .clock       (clock),
-                .write       (calibrated),
-                .write_frame (next_calibrated),
-                .write_data  ({in_version, in_replaced}),
-                .read_frame  (oldest),
-                .read_data   ({version, replaced})
-            );
-
             always @(posedge clock) begin
                 thresholds <= of_cean;
-                if (calibrated) begin
-                    next_calibrated <= next_calibrated + 4'd1;
-                end
-                if (cean_take) begin
-                    next_cean <= next_cean + 4'd1;
-                end
-                if (reset) begin
-                    next_calibrated <= 4'd0;
-                    next_cean <= 4'd0;
-                end
             end
+
+            sptfra_context_field #(
+                .WIDTH (59)
+            ) for_cean (
+                .clock      (clock),
+                .reset      (reset),
+                .write      (calibrated),
+                .write_data ({in_contact, in_noise}),
+                .take       (cean_take),
+                .oldest     (of_cean)
+            );
+
+            sptfra_context_field #(
+                .WIDTH (12)
+            ) for_output (
+                .clock      (clock),
+                .reset      (reset),
+                .write      (calibrated),
+                .write_data ({in_version, in_replaced}),
+                .take       (take),
+                .oldest     ({version, replaced})
+            );
         end else begin : gen_constant
             assign contact = 32'd0;
             assign noise = 27'd0;
@@ -158,52 +136,27 @@ module sptfra_frame_context #(
     // ---- Scale
     generate
         if (SCALED != 0) begin : gen_scale
-            reg [3:0] next_scaled;
-            reg [3:0] next_direction;
-
-            sptfra_context_words #(
+            sptfra_context_field #(
                 .WIDTH (5)
             ) for_direction (
-                .clock       (clock),
-                .write       (scaled),
-                .write_frame (next_scaled),
-                .write_data  (in_exponent),
-                .read_frame  (next_direction),
-                .read_data   (direction_exponent)
+                .clock      (clock),
+                .reset      (reset),
+                .write      (scaled),
+                .write_data (in_exponent),
+                .take       (direction_take),
+                .oldest     (direction_exponent)
             );
 
-            sptfra_context_words #(
+            sptfra_context_field #(
                 .WIDTH (5)
             ) for_output (
-                .clock       (clock),
-                .write       (scaled),
-                .write_frame (next_scaled),
-                .write_data  (in_exponent),
-                .read_frame  (oldest),
-                .read_data   (exponent)
+                .clock      (clock),
+                .reset      (reset),
+                .write      (scaled),
+                .write_data (in_exponent),
+                .take       (take),
+                .oldest     (exponent)
             );
-
-            always @(posedge clock) begin
-                if (scaled) begin
-                    next_scaled <= next_scaled + 4'd1;
-                end
-                if (direction_take) begin
-                    next_direction <= next_direction + 4'd1;
-                end
-                if (reset) begin
-                    next_scaled <= 4'd0;
-                    next_direction <= 4'd0;
-                end
-            end
-
-`ifdef SIMULATION
-            always @(posedge clock) begin
-                if (!reset && direction_take && (next_direction == next_scaled)) begin
-                    $fdisplay(32'h80000002, "%m: a frame is taken before its scale is known");
-                    $fatal(1);
-                end
-            end
-`endif
         end else begin : gen_unscaled
             assign direction_exponent = 5'd0;
             assign exponent = 5'd0;
@@ -212,21 +165,6 @@ module sptfra_frame_context #(
     endgenerate
 
     wire _unused_begins = &{1'b0, begins_with};
-
-`ifdef SIMULATION
-    // A frame leaves after it has come, and no more are inside than there is room for
-    reg [4:0] held;
-
-    always @(posedge clock) begin
-        held <= held + {4'd0, begins} - {4'd0, take};
-        if (reset) begin
-            held <= 5'd0;
-        end else if ((take && (held == 5'd0)) || (begins && (held == 5'd16))) begin
-            $fdisplay(32'h80000002, "%m: a frame leaves that has not come, or more are inside than there is room for");
-            $fatal(1);
-        end
-    end
-`endif
 
 endmodule
 
