@@ -160,7 +160,6 @@ module sptfra_features #(
         .done         (window_done)
     );
 
-`ifdef SIMULATION
     sptfra_check_latency #(
         .CYCLES (EXPECTED_LATENCY)
     ) check_latency (
@@ -169,9 +168,6 @@ module sptfra_features #(
         .start (features_start),
         .done  (features_done)
     );
-`else
-    wire _unused_check = (EXPECTED_LATENCY != 0);
-`endif
 
 endmodule
 

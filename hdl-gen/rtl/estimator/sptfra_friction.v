@@ -149,7 +149,6 @@ module sptfra_friction #(
         end
     end
 
-`ifdef SIMULATION
     sptfra_check_latency #(
         .CYCLES (EXPECTED_LATENCY)
     ) check_latency (
@@ -158,9 +157,6 @@ module sptfra_friction #(
         .start ((CORRECTED != 0) ? corrected : start),
         .done  (done)
     );
-`else
-    wire _unused_check = (EXPECTED_LATENCY != 0);
-`endif
 
     wire _unused = &{1'b0, accumulator, rounded};
 

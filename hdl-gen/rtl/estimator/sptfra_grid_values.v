@@ -320,7 +320,6 @@ module sptfra_grid_values #(
         end
     end
 
-`ifdef SIMULATION
     sptfra_check_latency #(
         .CYCLES (EXPECTED_LATENCY)
     ) check_latency (
@@ -329,9 +328,6 @@ module sptfra_grid_values #(
         .start (start),
         .done  (row_valid)
     );
-`else
-    wire _unused_check = (EXPECTED_LATENCY != 0);
-`endif
 
     wire _unused = &{1'b0, margins};
 

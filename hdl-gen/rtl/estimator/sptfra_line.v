@@ -236,7 +236,6 @@ module sptfra_line #(
         end
     end
 
-`ifdef SIMULATION
     sptfra_check_latency #(
         .CYCLES (EXPECTED_LATENCY)
     ) check_latency (
@@ -245,9 +244,6 @@ module sptfra_line #(
         .start (direction_take),
         .done  (line_valid)
     );
-`else
-    wire _unused_check = (EXPECTED_LATENCY != 0);
-`endif
 
     // Shifted sums have 18 bits, sign included
     wire _unused = &{1'b0, factor_shifted[39:18]};

@@ -337,7 +337,6 @@ module sptfra_search #(
         end
     end
 
-`ifdef SIMULATION
     sptfra_check_latency #(
         .CYCLES (EXPECTED_LATENCY)
     ) check_latency (
@@ -346,9 +345,6 @@ module sptfra_search #(
         .start (start),
         .done  (done)
     );
-`else
-    wire _unused_check = (EXPECTED_LATENCY != 0);
-`endif
 
     // Of a slope its sign; h is 0 with one point
     wire _unused = &{1'b0, totals, ends_sum[0], half, right_near};

@@ -314,7 +314,6 @@ module sptfra_summary #(
         end
     end
 
-`ifdef SIMULATION
     sptfra_check_latency #(
         .CYCLES (EXPECTED_LATENCY)
     ) check_latency (
@@ -323,9 +322,6 @@ module sptfra_summary #(
         .start (start),
         .done  (done)
     );
-`else
-    wire _unused_check = (EXPECTED_LATENCY != 0);
-`endif
 
     wire _unused = &{1'b0, nothing, dependent_rounded[LINE_FRACTION-1:0], high_part[47], tangential[39:38],
         gained[63:60], gained[19:0], shifted_x[32:0], shifted_y[32:0], shifted_z[31:0]};
