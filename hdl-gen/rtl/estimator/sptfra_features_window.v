@@ -224,6 +224,7 @@ module sptfra_features_window #(
         .WIDTH (STRESS_BITS)
     ) fold (
         .clock  (clock),
+        .enable (1'b1),
         .values (members_5),
         .sums   (folded_7)
     );

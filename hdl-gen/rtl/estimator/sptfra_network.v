@@ -184,6 +184,7 @@ module sptfra_network #(
         .WIDTH (UNIT_BITS)
     ) mirror (
         .clock  (clock),
+        .enable (1'b1),
         .values (classes_1),
         .sums   (images_3)
     );
@@ -204,6 +205,7 @@ module sptfra_network #(
         .WIDTH (UNIT_BITS)
     ) mirror_back (
         .clock  (clock),
+        .enable (1'b1),
         .values (hinges_3),
         .sums   (mean_5)
     );

@@ -3,15 +3,20 @@
 //
 // Sums and differences of four numbers: out 0 = a + b + c + d, 1 = a - b + c - d, 2 = a + b - c - d, 3 = a - b - c + d.
 //
-// Folds the taxels of a quad into parity classes, and unfolds the classes into four times the taxels. Two cycles.
+// Folds the taxels of a quad into parity classes, and unfolds the classes into four times the taxels.
+//
+// Latency: two enabled cycles.
 
 `default_nettype none
 
 module sptfra_butterfly #(
     // Bits of a number
-    parameter WIDTH = 27
+    parameter WIDTH = 27,
+    // Added to each result, for its rounding
+    parameter signed [WIDTH+1:0] HALF = 0
 ) (
     input  wire clock,
+    input  wire enable,
     input  wire [4*WIDTH-1:0] values, // a in the lowest bits
     output wire [4*WIDTH+7:0] sums
 );
@@ -30,14 +35,16 @@ module sptfra_butterfly #(
     reg signed [WIDTH+1:0] sum_3;
 
     always @(posedge clock) begin
-        even_ab <= {a[WIDTH-1], a} + {b[WIDTH-1], b};
-        odd_ab <= {a[WIDTH-1], a} - {b[WIDTH-1], b};
-        even_cd <= {c[WIDTH-1], c} + {d[WIDTH-1], d};
-        odd_cd <= {c[WIDTH-1], c} - {d[WIDTH-1], d};
-        sum_0 <= {even_ab[WIDTH], even_ab} + {even_cd[WIDTH], even_cd};
-        sum_1 <= {odd_ab[WIDTH], odd_ab} + {odd_cd[WIDTH], odd_cd};
-        sum_2 <= {even_ab[WIDTH], even_ab} - {even_cd[WIDTH], even_cd};
-        sum_3 <= {odd_ab[WIDTH], odd_ab} - {odd_cd[WIDTH], odd_cd};
+        if (enable) begin
+            even_ab <= {a[WIDTH-1], a} + {b[WIDTH-1], b};
+            odd_ab <= {a[WIDTH-1], a} - {b[WIDTH-1], b};
+            even_cd <= {c[WIDTH-1], c} + {d[WIDTH-1], d};
+            odd_cd <= {c[WIDTH-1], c} - {d[WIDTH-1], d};
+            sum_0 <= {even_ab[WIDTH], even_ab} + {even_cd[WIDTH], even_cd} + HALF;
+            sum_1 <= {odd_ab[WIDTH], odd_ab} + {odd_cd[WIDTH], odd_cd} + HALF;
+            sum_2 <= {even_ab[WIDTH], even_ab} - {even_cd[WIDTH], even_cd} + HALF;
+            sum_3 <= {odd_ab[WIDTH], odd_ab} - {odd_cd[WIDTH], odd_cd} + HALF;
+        end
     end
 
     assign sums = {sum_3, sum_2, sum_1, sum_0};

@@ -181,42 +181,20 @@ module sptfra_fold #(
     endgenerate
 
     // ---- Mirror in x, mirror in y: two cycles. On a centre line both are the same taxel
-    localparam signed [SUM_BITS-1:0] HALF = DROPPED; // half a step of the result, for the rounding
     wire [WAYS*SUM_BITS-1:0] sums;
 
     generate
         if (WAYS == 4) begin : gen_classes
-            wire signed [STRESS_BITS-1:0] d = $signed(shifted[0 +: STRESS_BITS]);
-            wire signed [STRESS_BITS-1:0] a = $signed(shifted[STRESS_BITS +: STRESS_BITS]);
-            wire signed [STRESS_BITS-1:0] b = $signed(shifted[2*STRESS_BITS +: STRESS_BITS]);
-            wire signed [STRESS_BITS-1:0] c = $signed(shifted[3*STRESS_BITS +: STRESS_BITS]);
-            reg signed [STRESS_BITS:0] upper_even;
-            reg signed [STRESS_BITS:0] upper_odd;
-            reg signed [STRESS_BITS:0] lower_even;
-            reg signed [STRESS_BITS:0] lower_odd;
-            wire signed [SUM_BITS-1:0] even_above = {upper_even[STRESS_BITS], upper_even};
-            wire signed [SUM_BITS-1:0] odd_above = {upper_odd[STRESS_BITS], upper_odd};
-            wire signed [SUM_BITS-1:0] even_below = {lower_even[STRESS_BITS], lower_even};
-            wire signed [SUM_BITS-1:0] odd_below = {lower_odd[STRESS_BITS], lower_odd};
-            reg signed [SUM_BITS-1:0] sum_0;
-            reg signed [SUM_BITS-1:0] sum_1;
-            reg signed [SUM_BITS-1:0] sum_2;
-            reg signed [SUM_BITS-1:0] sum_3;
-
-            assign sums = {sum_3, sum_2, sum_1, sum_0};
-
-            always @(posedge clock) begin
-                if (advance) begin
-                    upper_even <= {a[STRESS_BITS-1], a} + {b[STRESS_BITS-1], b};
-                    upper_odd <= {a[STRESS_BITS-1], a} - {b[STRESS_BITS-1], b};
-                    lower_even <= {c[STRESS_BITS-1], c} + {d[STRESS_BITS-1], d};
-                    lower_odd <= {c[STRESS_BITS-1], c} - {d[STRESS_BITS-1], d};
-                    sum_0 <= even_above + even_below + HALF;
-                    sum_1 <= odd_above + odd_below + HALF;
-                    sum_2 <= even_above - even_below + HALF;
-                    sum_3 <= odd_above - odd_below + HALF;
-                end
-            end
+            // Half a step of the result is added, for the rounding
+            sptfra_butterfly #(
+                .WIDTH (STRESS_BITS),
+                .HALF  (DROPPED)
+            ) butterfly (
+                .clock  (clock),
+                .enable (advance),
+                .values ({shifted[0 +: STRESS_BITS], shifted[STRESS_BITS +: 3*STRESS_BITS]}),
+                .sums   (sums)
+            );
         end else begin : gen_taxels
             reg [2*SUM_BITS-1:0] held;
 
@@ -228,7 +206,7 @@ module sptfra_fold #(
                 end
             end
 
-            wire _unused_images = &{1'b0, taxels, HALF};
+            wire _unused_images = &{1'b0, taxels};
         end
     endgenerate
 

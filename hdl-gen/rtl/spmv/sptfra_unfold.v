@@ -163,6 +163,7 @@ module sptfra_unfold #(
                 .WIDTH (DATA_BITS)
             ) butterfly (
                 .clock  (clock),
+                .enable (1'b1),
                 .values (class_3),
                 .sums   (wide)
             );

@@ -91,6 +91,7 @@ module sptfra_we #(
                 .WIDTH (DATA_BITS)
             ) fold_press (
                 .clock  (clock),
+                .enable (1'b1),
                 .values (press),
                 .sums   (press_sums)
             );
@@ -99,6 +100,7 @@ module sptfra_we #(
                 .WIDTH (DATA_BITS)
             ) fold_pull (
                 .clock  (clock),
+                .enable (1'b1),
                 .values (pull),
                 .sums   (pull_sums)
             );
