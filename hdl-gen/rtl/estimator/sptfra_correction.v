@@ -3,9 +3,8 @@
 //
 // Correction of a frame's friction pair: features of the contact, then the network.
 //
-// It has its own copy of u_q, so the next frame may be searched meanwhile. While one frame is corrected, the features
-// of another may be made. Latency from start to done: 11 cycles, one per word of each pass, one per unit of a pass,
-// and 14.
+// The next frame may be searched meanwhile. While one frame is corrected, the features of another may be made. Latency
+// from start to done: 11 cycles, one per word of each pass, one per unit of a pass, and 14.
 
 `default_nettype none
 
@@ -67,29 +66,6 @@ module sptfra_correction #(
     wire [WORD_WIDTH-1:0] input_word;
     wire [4*27-1:0] input_values;
     wire first_input;
-    wire [ROW_WIDTH-1:0] features_quad;
-    wire [3*4*27-1:0] features_values;
-
-    genvar index;
-
-    generate
-        // A search that begins after features is behind them all the way: two cycles a quad at least
-        for (index = 0; index < 3; index = index + 1) begin : gen_memories
-            sptfra_ram #(
-                .WIDTH         (4 * 27),
-                .DEPTH         ((QUADS > 8) ? QUADS : 8),
-                .ADDRESS_WIDTH (ROW_WIDTH)
-            ) of_q (
-                .clock         (clock),
-                .write_enable  (read_valid),
-                .write_address (read_quad),
-                .write_data    (read_values[4*27*index +: 4*27]),
-                .read_enable   (1'b1),
-                .read_address  (features_quad),
-                .read_data     (features_values[4*27*index +: 4*27])
-            );
-        end
-    endgenerate
 
     sptfra_features #(
         .COLUMNS          (COLUMNS),
@@ -106,11 +82,12 @@ module sptfra_correction #(
         .reset          (reset),
         .start          (search_start),
         .stress_sum     (stress_sum),
+        .read_valid     (read_valid),
+        .read_quad      (read_quad),
+        .read_values    (read_values),
         .features_start (features_start),
         .mu_x           (mu_x),
         .mu_y           (mu_y),
-        .u_quad         (features_quad),
-        .u_values       (features_values),
         .features_done  (features_done),
         .saturated      (saturated),
         .window_start   (start),

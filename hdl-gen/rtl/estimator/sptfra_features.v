@@ -5,8 +5,8 @@
 //
 // Along its way: scale (1 / sum |b|, during the grid search), stress (a quad in two cycles, its compression's
 // moments), their centroid; when the network is free for it the window (folded into parity classes). While one frame is
-// in the window the next one may start. From features_start to features_done: two cycles a quad, and 33; from
-// window_start to window_done: 10, and one a word.
+// in the window the next one may start. From start to the scale: 8 cycles and a division; from features_start to
+// features_done: two cycles a quad, and 33; from window_start to window_done: 10, and one a word.
 
 `default_nettype none
 
@@ -34,13 +34,14 @@ module sptfra_features #(
     // A frame, with its sum |b| held from the next cycle on until its centroid of the level set is there
     input  wire start,
     input  wire [39:0] stress_sum,
-    // It is, and held from the next cycle on until the window is done
+    // u_q of a quad's taxels, member 0 and u_0 in the lowest bits, as the search reads them
+    input  wire read_valid,
+    input  wire [ROW_WIDTH-1:0] read_quad,
+    input  wire [3*4*27-1:0] read_values,
+    // The centroid is there, and held from the next cycle on until the window is done
     input  wire features_start,
     input  wire signed [17:0] mu_x,
     input  wire signed [17:0] mu_y,
-    // u_q of a quad's taxels, a cycle after they are asked for
-    output wire [ROW_WIDTH-1:0] u_quad,
-    input  wire [3*4*27-1:0] u_values,
     output wire features_done, // one cycle: the contact's centre is there, and held
     output wire saturated, // a share was clipped; held until the next features
     // Inputs of the network
@@ -55,28 +56,97 @@ module sptfra_features #(
     // Of the centre: taxels, and fraction of a pitch
     localparam integer CENTRE_BITS = 22;
     localparam integer TAXEL_BITS = 6;
+    localparam integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2);
+    localparam integer SUM_BITS = 40;
+    localparam integer RECIPROCAL_BITS = 16;
+    localparam [63:0] NUMERATOR = 64'd1 << (SUM_BITS + RECIPROCAL_BITS);
 
-    // ---- Scale: of the frame that is searched, then of the one whose features are computed
-    wire [5:0] next_sum_bits;
-    wire signed [17:0] next_reciprocal;
+    // ---- Scale, of the frame that is searched: sum |b|, its leading bit at the top
+    wire [5:0] found_bits;
+    reg [5:0] next_sum_bits;
+    reg [39:0] sum_octets;
+    reg [39:0] normalised;
+    reg [2:0] prepare; // cycles since the start
+    wire [5:0] to_top = SUM_BITS[5:0] - next_sum_bits;
+
+    sptfra_leading_bit #(
+        .WIDTH (SUM_BITS)
+    ) leading_bit (
+        .clock (clock),
+        .value (stress_sum),
+        .bits  (found_bits)
+    );
+
+    // ---- Its reciprocal; then of the frame whose features are computed
+    reg inverting;
+    wire divide_done;
+    wire [63:0] quotient;
+    wire invert = (prepare == 3'd6);
+    reg signed [17:0] next_reciprocal; // 2^-(16 + sum_bits) a step
     reg [5:0] sum_bits;
     reg signed [17:0] reciprocal;
 
-    sptfra_features_scale scale (
-        .clock      (clock),
-        .reset      (reset),
-        .start      (start),
-        .stress_sum (stress_sum),
-        .sum_bits   (next_sum_bits),
-        .reciprocal (next_reciprocal)
+    sptfra_divider divider (
+        .clock       (clock),
+        .reset       (reset),
+        .start       (invert),
+        .numerator   (NUMERATOR),
+        .denominator ({8'd0, normalised}),
+        .quotient    (quotient),
+        .done        (divide_done)
     );
 
     always @(posedge clock) begin
+        next_sum_bits <= found_bits;
+        sum_octets <= stress_sum << {to_top[5:3], 3'd0};
+        normalised <= sum_octets << to_top[2:0];
+        if (prepare != 3'd0) begin
+            prepare <= prepare + 3'd1;
+        end
+        if (invert) begin
+            prepare <= 3'd0;
+            inverting <= 1'b1;
+        end
+        if (start) begin
+            prepare <= 3'd1;
+        end
+        if (divide_done && inverting) begin
+            inverting <= 1'b0;
+            next_reciprocal <= (quotient[63:17] == 47'd0) ? {1'b0, quotient[16:0]} : 18'sd131071;
+        end
         if (features_start) begin
             sum_bits <= next_sum_bits;
             reciprocal <= next_reciprocal;
         end
+        if (reset) begin
+            prepare <= 3'd0;
+            inverting <= 1'b0;
+        end
     end
+
+    // ---- u_q, of a frame of its own: the next one may be searched meanwhile
+    wire [ROW_WIDTH-1:0] u_quad;
+    wire [3*4*27-1:0] u_values;
+    genvar index;
+
+    generate
+        // A search that begins after features is behind them all the way: two cycles a quad at least
+        for (index = 0; index < 3; index = index + 1) begin : gen_memories
+            sptfra_ram #(
+                .WIDTH         (4 * 27),
+                .DEPTH         ((QUADS > 8) ? QUADS : 8),
+                .ADDRESS_WIDTH (ROW_WIDTH)
+            ) of_q (
+                .clock         (clock),
+                .write_enable  (read_valid),
+                .write_address (read_quad),
+                .write_data    (read_values[4*27*index +: 4*27]),
+                .read_enable   (1'b1),
+                .read_address  (u_quad),
+                .read_data     (u_values[4*27*index +: 4*27])
+            );
+        end
+    endgenerate
 
     // ---- Stress
     wire share_valid;
