@@ -103,7 +103,7 @@ module harness (
         .\writer.fold.valid (fold_valid),
         .\writer.fold.lasts (fold_lasts),
         .\writer.fold.rows (fold_rows),
-        .\gen_samples[0].samples.decode.gen_float.float_to_fixed.stages (stages)
+        .\gen_samples[0].samples.gen_float.float_to_fixed.stages (stages)
     );
 
     // ---- Elements in the order in which they are written

@@ -12,14 +12,16 @@
 module sptfra_samples #(
     // Taxels of a frame
     parameter TAXELS = 100,
-    // What a sample is: see sptfra_decode
+    // What a sample is: 0 float32, 1 a 16-bit integer, 2 one without a sign
     parameter SAMPLE = 0,
     // Exponent of the number's step, negated, and its largest magnitude, of the stress or of the counts
     parameter NUMBER_SHIFT = 9,
     parameter [26:0] NUMBER_BOUND = 27'd51200000,
-    // 1: the stream carries counts; gains and full scale: see sptfra_gains and sptfra_counts
+    // 1: the stream carries counts; gains and full scale: see sptfra_counts
     parameter COUNTS = 0,
+    // 1: constants and curve come from the banks of a calibration
     parameter CALIBRATED = 0,
+    // 1: each taxel has an exponent, a gain and an offset of its own; 0: these
     parameter PER_TAXEL = 0,
     parameter signed [9:0] EXPONENT = 10'sd0,
     parameter signed [17:0] GAIN = 18'sd65536,
@@ -79,6 +81,7 @@ module sptfra_samples #(
     wire signed [9:0] exponent;
     wire [SAMPLE_BITS-1:0] decoded;
     wire signed [9:0] shift;
+    wire [26:0] limit = ((CALIBRATED != 0) && (SHIFTS != 0)) ? bank_reach : NUMBER_BOUND;
 
     generate
         if ((PER_TAXEL != 0) && (SHIFTS == 0)) begin : gen_exponents
@@ -101,17 +104,34 @@ module sptfra_samples #(
         end
     endgenerate
 
-    sptfra_decode #(
-        .SAMPLE (SAMPLE)
-    ) decode (
-        .clock      (clock),
-        .sample     (decoded),
-        .shift      (shift),
-        .limit      (((CALIBRATED != 0) && (SHIFTS != 0)) ? bank_reach : NUMBER_BOUND),
-        .number     (number),
-        .saturated  (number_saturated),
-        .not_finite (number_not_finite)
-    );
+    generate
+        if (SAMPLE == 0) begin : gen_float
+            sptfra_float_to_fixed float_to_fixed (
+                .clock      (clock),
+                .enable     (1'b1),
+                .float_bits (decoded),
+                .shift      (shift),
+                .limit      (limit),
+                .fixed      (number),
+                .saturated  (number_saturated),
+                .not_finite (number_not_finite)
+            );
+        end else begin : gen_integer
+            sptfra_int_to_fixed #(
+                .SIGNED ((SAMPLE == 1) ? 1 : 0)
+            ) int_to_fixed (
+                .clock     (clock),
+                .enable    (1'b1),
+                .count     (decoded),
+                .shift     (shift),
+                .limit     (limit),
+                .fixed     (number),
+                .saturated (number_saturated)
+            );
+
+            assign number_not_finite = 1'b0;
+        end
+    endgenerate
 
     // ---- Counts along the curve
     wire signed [26:0] count;
@@ -165,36 +185,81 @@ module sptfra_samples #(
         end
     endgenerate
 
-    // ---- Counts to stress
+    // ---- Counts to stress. Exponent, gain and offset come a cycle after their taxel
+    reg [TAXEL_WIDTH-1:0] sampled;
+    reg [TAXEL_WIDTH-1:0] valued;
+
+    assign exponent_taxel = (SHIFTS != 0) ? valued : sampled;
+    assign gain_taxel = valued;
+
+    always @(posedge clock) begin
+        if (sample_taken) begin
+            sampled <= sampled + 1'b1;
+        end
+        if (value_taken) begin
+            valued <= valued + 1'b1;
+        end
+        if (reset || sample_ends) begin
+            sampled <= {TAXEL_WIDTH{1'b0}};
+        end
+        if (reset || value_ends) begin
+            valued <= {TAXEL_WIDTH{1'b0}};
+        end
+    end
+
     generate
         if (COUNTS != 0) begin : gen_counts
             wire [17:0] gain;
             wire [OFFSET_BITS-1:0] offset;
 
-            sptfra_gains #(
-                .TAXELS      (TAXELS),
-                .PER_TAXEL   (PER_TAXEL),
-                .EXPONENT    (EXPONENT),
-                .GAIN        (GAIN),
-                .OFFSET_BITS (OFFSET_BITS),
-                .CALIBRATED  (CALIBRATED),
-                .SHIFTS      (SHIFTS),
-                .ROM_DIR     (ROM_DIR),
-                .ROM_NAME    (TAXEL_NAME)
-            ) gains (
-                .clock          (clock),
-                .reset          (reset),
-                .sample_taken   (sample_taken),
-                .sample_ends    (sample_ends),
-                .value_taken    (value_taken),
-                .value_ends     (value_ends),
-                .exponent_taxel (exponent_taxel),
-                .gain_taxel     (gain_taxel),
-                .bank_constants (bank_constants),
-                .exponent       (exponent),
-                .gain           (gain),
-                .offset         (offset)
-            );
+            if (PER_TAXEL == 0) begin : gen_shared
+                assign {exponent, gain, offset} = {EXPONENT, GAIN, {OFFSET_BITS{1'b0}}};
+            end else if (CALIBRATED != 0) begin : gen_bank
+                assign {exponent, gain, offset} = bank_constants;
+            end else begin : gen_roms
+                wire [9:0] exponent_bits;
+
+                assign exponent = exponent_bits;
+
+                sptfra_rom #(
+                    .WIDTH         (10),
+                    .DEPTH         (TAXELS),
+                    .ADDRESS_WIDTH (TAXEL_WIDTH),
+                    .ROM_DIR       (ROM_DIR),
+                    .FILE          ((TAXEL_NAME == "") ? "" : {TAXEL_NAME, "_exponents.mem"})
+                ) exponents (
+                    .clock   (clock),
+                    .enable  (1'b1),
+                    .address (exponent_taxel),
+                    .data    (exponent_bits)
+                );
+
+                sptfra_rom #(
+                    .WIDTH         (18),
+                    .DEPTH         (TAXELS),
+                    .ADDRESS_WIDTH (TAXEL_WIDTH),
+                    .ROM_DIR       (ROM_DIR),
+                    .FILE          ((TAXEL_NAME == "") ? "" : {TAXEL_NAME, "_gains.mem"})
+                ) gains (
+                    .clock   (clock),
+                    .enable  (1'b1),
+                    .address (gain_taxel),
+                    .data    (gain)
+                );
+
+                sptfra_rom #(
+                    .WIDTH         (OFFSET_BITS),
+                    .DEPTH         (TAXELS),
+                    .ADDRESS_WIDTH (TAXEL_WIDTH),
+                    .ROM_DIR       (ROM_DIR),
+                    .FILE          ((TAXEL_NAME == "") ? "" : {TAXEL_NAME, "_offsets.mem"})
+                ) offsets (
+                    .clock   (clock),
+                    .enable  (1'b1),
+                    .address (gain_taxel),
+                    .data    (offset)
+                );
+            end
 
             sptfra_counts #(
                 .SHIFTS       (SHIFTS),
@@ -216,17 +281,15 @@ module sptfra_samples #(
             );
         end else begin : gen_stress
             assign exponent = 10'sd0;
-            assign exponent_taxel = {TAXEL_WIDTH{1'b0}};
-            assign gain_taxel = {TAXEL_WIDTH{1'b0}};
             assign stress = count;
             assign saturated = count_saturated;
             assign not_finite = count_not_finite;
-            wire _unused = &{1'b0, reset, sample_taken, sample_ends, value_taken, value_ends, exponent, EXPONENT, GAIN,
-                OFFSET_BITS != 0, COUNT_SHIFT != 0, FULL_SCALE, STRESS_BOUND, TAXEL_NAME != ""};
+            wire _unused = &{1'b0, exponent, OFFSET_BITS != 0, COUNT_SHIFT != 0, FULL_SCALE, STRESS_BOUND,
+                TAXEL_NAME != ""};
         end
     endgenerate
 
-    wire _unused_bank = &{1'b0, bank_constants, bank_knots, bank_segments, bank_last,
+    wire _unused_bank = &{1'b0, EXPONENT, GAIN, bank_constants, bank_knots, bank_segments, bank_last,
         bank_reach, bank_line, ROM_DIR != "", ROM_NAME != ""};
 
 endmodule

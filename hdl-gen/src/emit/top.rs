@@ -255,7 +255,7 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     }
     let curve = plan.design.input.curve.is_some();
     if !plan.design.input.counts() {
-        without.extend(["sptfra_counts", "sptfra_gains"]);
+        without.push("sptfra_counts");
     }
     if !curve {
         without.push("sptfra_curve");

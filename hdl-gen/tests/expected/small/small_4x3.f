@@ -7,10 +7,9 @@ rtl/sptfra_cean.v
 rtl/sptfra_check_delay.v
 rtl/sptfra_check_latency.v
 rtl/sptfra_co.v
-rtl/sptfra_context_words.v
+rtl/sptfra_context_field.v
 rtl/sptfra_cordic.v
 rtl/sptfra_corrections.v
-rtl/sptfra_decode.v
 rtl/sptfra_direction.v
 rtl/sptfra_divider.v
 rtl/sptfra_estimator_line.v

@@ -22,10 +22,9 @@ foreach file {
     sptfra_check_delay.v
     sptfra_check_latency.v
     sptfra_co.v
-    sptfra_context_words.v
+    sptfra_context_field.v
     sptfra_cordic.v
     sptfra_corrections.v
-    sptfra_decode.v
     sptfra_direction.v
     sptfra_divider.v
     sptfra_estimator_line.v
