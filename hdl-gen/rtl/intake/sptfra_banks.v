@@ -239,13 +239,9 @@ module sptfra_banks #(
                 .counts       (both_counts),
                 .lasts        (lasts),
                 .reaches      (reaches),
-                .read_enable  (1'b1),
                 .read_bank    (bank),
                 .read_segment (segment),
-                .read_first   (line[77:51]),
-                .read_value   (line[50:24]),
-                .read_slope   (line[23:6]),
-                .read_shift   (shift)
+                .read_line    ({line[77:6], shift})
             );
         end else begin : gen_no_curve
             assign curve_result = 34'd0;

@@ -41,14 +41,10 @@ module sptfra_curve_bank #(
     output wire [13:0] counts,
     output wire [53:0] lasts,
     output wire [53:0] reaches, // magnitude from which on a number is at an end
-    // The line of a segment
-    input  wire read_enable,
+    // The line of a segment: number with which it begins, value there, slope, bits dropped
     input  wire read_bank,
     input  wire [LEVELS-1:0] read_segment,
-    output wire signed [26:0] read_first,
-    output wire signed [26:0] read_value,
-    output wire signed [17:0] read_slope,
-    output wire [5:0] read_shift
+    output wire [77:0] read_line
 );
 
     localparam [31:0] SEGMENT_WORDS_WIDE = 4 * SEGMENTS;
@@ -81,10 +77,11 @@ module sptfra_curve_bank #(
     reg [HEAD_BITS-1:0] head_0;
     reg [HEAD_BITS-1:0] head_1;
     wire [HEAD_BITS-1:0] head = bank ? head_1 : head_0;
-    wire signed [26:0] first;
-    wire signed [26:0] value;
-    wire signed [17:0] slope;
-    wire [5:0] shift;
+    wire [77:0] line; // of the segment
+    wire signed [26:0] first = line[77:51];
+    wire signed [26:0] value = line[50:24];
+    wire signed [17:0] slope = line[23:6];
+    wire [5:0] shift = line[5:0];
     reg of_segment_1;
     reg [1:0] kind_1;
     reg [31:0] head_word_1;
@@ -168,69 +165,32 @@ module sptfra_curve_bank #(
         end
     end
 
-    sptfra_bank #(
-        .WIDTH         (27),
-        .ADDRESS_WIDTH (LEVELS + 1),
-        .ROM_DIR       (ROM_DIR),
-        .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_curve_firsts.mem"})
-    ) firsts (
-        .clock        (clock),
-        .write_enable (write_knot),
-        .address      (address),
-        .write_data   (knot_in),
-        .data         (first),
-        .read_enable  (read_enable),
-        .read_address ({read_bank, read_segment}),
-        .read_data    (read_first)
-    );
+    genvar index;
 
-    sptfra_bank #(
-        .WIDTH         (27),
-        .ADDRESS_WIDTH (LEVELS + 1),
-        .ROM_DIR       (ROM_DIR),
-        .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_curve_values.mem"})
-    ) values (
-        .clock        (clock),
-        .write_enable (copy_writes || (writes && of_segment && (kind == 2'd1))),
-        .address      (address),
-        .write_data   (copy_writes ? value : data[26:0]),
-        .data         (value),
-        .read_enable  (read_enable),
-        .read_address ({read_bank, read_segment}),
-        .read_data    (read_value)
-    );
+    generate
+        for (index = 0; index < 4; index = index + 1) begin : gen_fields
+            localparam WIDTH = (index < 2) ? 27 : (index == 2) ? 18 : 6;
+            localparam PLACE = (index == 0) ? 51 : (index == 1) ? 24 : (index == 2) ? 6 : 0; // in a line
+            localparam [8*6-1:0] NAME = (index == 0) ? "firsts" : (index == 1) ? "values"
+                : (index == 2) ? "slopes" : "shifts";
 
-    sptfra_bank #(
-        .WIDTH         (18),
-        .ADDRESS_WIDTH (LEVELS + 1),
-        .ROM_DIR       (ROM_DIR),
-        .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_curve_slopes.mem"})
-    ) slopes (
-        .clock        (clock),
-        .write_enable (copy_writes || (writes && of_segment && (kind == 2'd2))),
-        .address      (address),
-        .write_data   (copy_writes ? slope : data[17:0]),
-        .data         (slope),
-        .read_enable  (read_enable),
-        .read_address ({read_bank, read_segment}),
-        .read_data    (read_slope)
-    );
-
-    sptfra_bank #(
-        .WIDTH         (6),
-        .ADDRESS_WIDTH (LEVELS + 1),
-        .ROM_DIR       (ROM_DIR),
-        .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_curve_shifts.mem"})
-    ) shifts (
-        .clock        (clock),
-        .write_enable (copy_writes || (writes && of_segment && (kind == 2'd3))),
-        .address      (address),
-        .write_data   (copy_writes ? shift : data[5:0]),
-        .data         (shift),
-        .read_enable  (read_enable),
-        .read_address ({read_bank, read_segment}),
-        .read_data    (read_shift)
-    );
+            sptfra_bank #(
+                .WIDTH         (WIDTH),
+                .ADDRESS_WIDTH (LEVELS + 1),
+                .ROM_DIR       (ROM_DIR),
+                .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_curve_", NAME, ".mem"})
+            ) field (
+                .clock        (clock),
+                .write_enable (copy_writes || (writes && of_segment && (kind == index))),
+                .address      (address),
+                .write_data   (copy_writes ? line[PLACE +: WIDTH] : data[WIDTH-1:0]),
+                .data         (line[PLACE +: WIDTH]),
+                .read_enable  (1'b1),
+                .read_address ({read_bank, read_segment}),
+                .read_data    (read_line[PLACE +: WIDTH])
+            );
+        end
+    endgenerate
 
     // ---- The walk of a commit: with a segment's last word its check begins
     wire [27*SEGMENTS-1:0] knots_here = bank ? knots_1 : knots_0;
