@@ -167,17 +167,35 @@ module sptfra_spmv_lane #(
     reg  [WAYS*COEFFICIENT_BITS-1:0] coefficient;
     (* keep = "true" *) reg [3:2] swaps; // the classes that are odd in x only and in y only
 
+    // The quad on the other side of the diagonal, of each quad of a square grid
+    localparam QUADS = (MIRROR_SIDE > 0) ? MIRROR_SIDE * MIRROR_SIDE : 1;
+    localparam MIRROR_HALF = (MIRROR_SIDE > 1) ? $clog2(MIRROR_SIDE) : 1;
+
+    function [QUADS*ROW_WIDTH-1:0] images(input integer side);
+        integer index;
+        integer place;
+        reg [31:0] other;
+        begin
+            images = {(QUADS*ROW_WIDTH){1'b0}};
+            for (index = 0; index < side * side; index = index + 1) begin
+                other = (index % side) * side + index / side;
+                for (place = 0; place < ROW_WIDTH; place = place + 1) begin
+                    images[ROW_WIDTH*index + place] = other[place];
+                end
+            end
+        end
+    endfunction
+
     assign element = mirrored ? {{(32-ROW_WIDTH){1'b0}}, mirror_image} : column_wide;
 
     generate
-        if (MIRROR_SIDE > 0) begin : gen_mirror
-            sptfra_diagonal_mirror #(
-                .SIDE      (MIRROR_SIDE),
-                .ROW_WIDTH (ROW_WIDTH)
-            ) diagonal_mirror (
-                .quad  (column_wide[ROW_WIDTH-1:0]),
-                .image (mirror_image)
-            );
+        if ((MIRROR_SIDE == (1 << MIRROR_HALF)) && (ROW_WIDTH == 2 * MIRROR_HALF)) begin : gen_exchange
+            // Row and column change places
+            assign mirror_image = {column_wide[MIRROR_HALF-1:0], column_wide[2*MIRROR_HALF-1:MIRROR_HALF]};
+        end else if (MIRROR_SIDE > 0) begin : gen_images
+            localparam [QUADS*ROW_WIDTH-1:0] IMAGES = images(MIRROR_SIDE);
+
+            assign mirror_image = IMAGES[ROW_WIDTH*column_wide[ROW_WIDTH-1:0] +: ROW_WIDTH];
         end else begin : gen_no_mirror
             assign mirror_image = {ROW_WIDTH{1'b0}};
         end

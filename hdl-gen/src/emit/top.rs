@@ -289,9 +289,6 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     if plan.ways() > 1 {
         without.push("sptfra_coefficients");
     }
-    if plan.products.iter().all(|product| product.mirrored.is_none()) {
-        without.push("sptfra_diagonal_mirror");
-    }
     without
 }
 
