@@ -114,12 +114,7 @@ module sptfra_op #(
     wire friction_done;
     wire summary_done;
     wire dependent_clipped;
-    wire signed [63:0] force_x;
-    wire signed [63:0] force_y;
-    wire signed [63:0] force_z;
-    wire signed [63:0] torque_x;
-    wire signed [63:0] torque_y;
-    wire signed [63:0] torque_z;
+    wire [6*64-1:0] wrench;
     wire [63:0] friction_quotient;
     wire signed [9:0] friction_exponent;
     wire signed [31:0] angle;
@@ -189,12 +184,7 @@ module sptfra_op #(
         .mu_x              (mu_x),
         .mu_y              (mu_y),
         .dependent_clipped (dependent_clipped),
-        .force_x           (force_x),
-        .force_y           (force_y),
-        .force_z           (force_z),
-        .torque_x          (torque_x),
-        .torque_y          (torque_y),
-        .torque_z          (torque_z),
+        .wrench            (wrench),
         .friction_quotient (friction_quotient),
         .friction_exponent (friction_exponent),
         .angle             (angle),
@@ -303,12 +293,7 @@ module sptfra_op #(
         .counters          (counters),
         .exponent          (exponent),
         .blank             (!answered),
-        .force_x           (force_x),
-        .force_y           (force_y),
-        .force_z           (force_z),
-        .torque_x          (torque_x),
-        .torque_y          (torque_y),
-        .torque_z          (torque_z),
+        .wrench            (wrench),
         .friction_quotient (friction_quotient),
         .friction_exponent (friction_exponent),
         .angle             (angle),

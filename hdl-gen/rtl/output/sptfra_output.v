@@ -49,12 +49,7 @@ module sptfra_output #(
     input  wire [31:0] counters, // word 13
     input  wire [4:0] exponent, // of the frame's scale: forces, torques and error are divided by two to its power
     input  wire blank, // no answer: zeros
-    input  wire signed [63:0] force_x,
-    input  wire signed [63:0] force_y,
-    input  wire signed [63:0] force_z,
-    input  wire signed [63:0] torque_x,
-    input  wire signed [63:0] torque_y,
-    input  wire signed [63:0] torque_z,
+    input  wire [6*64-1:0] wrench, // forces in x, y, z, torques in x, y, z, the first in the lowest bits
     input  wire [63:0] friction_quotient,
     input  wire signed [9:0] friction_exponent,
     input  wire signed [31:0] angle, // 29 fraction bits
@@ -105,12 +100,7 @@ module sptfra_output #(
     reg [31:0] held_counters;
     reg [4:0] held_scale;
     reg held_blank;
-    reg signed [63:0] held_force_x;
-    reg signed [63:0] held_force_y;
-    reg signed [63:0] held_force_z;
-    reg signed [63:0] held_torque_x;
-    reg signed [63:0] held_torque_y;
-    reg signed [63:0] held_torque_z;
+    reg [6*64-1:0] held_wrench;
     reg [63:0] held_quotient;
     reg signed [9:0] held_exponent;
     reg signed [31:0] held_angle;
@@ -181,12 +171,7 @@ module sptfra_output #(
         if (load) begin
             held_status <= status;
             held_blank <= blank;
-            held_force_x <= force_x;
-            held_force_y <= force_y;
-            held_force_z <= force_z;
-            held_torque_x <= torque_x;
-            held_torque_y <= torque_y;
-            held_torque_z <= torque_z;
+            held_wrench <= wrench;
             held_quotient <= friction_quotient;
             held_exponent <= friction_exponent;
             held_angle <= angle;
@@ -253,12 +238,7 @@ module sptfra_output #(
                 .timestamp         (held_timestamp),
                 .counters          (held_counters),
                 .scale             (held_scale),
-                .force_x           (held_force_x),
-                .force_y           (held_force_y),
-                .force_z           (held_force_z),
-                .torque_x          (held_torque_x),
-                .torque_y          (held_torque_y),
-                .torque_z          (held_torque_z),
+                .wrench            (held_wrench),
                 .friction_quotient (held_quotient),
                 .friction_exponent (held_exponent),
                 .angle             (held_angle),

@@ -29,12 +29,7 @@ module sptfra_output_word #(
     input  wire [31:0] timestamp,
     input  wire [31:0] counters, // word 13
     input  wire [4:0] scale, // forces, torques and error are divided by two to its power
-    input  wire signed [63:0] force_x,
-    input  wire signed [63:0] force_y,
-    input  wire signed [63:0] force_z,
-    input  wire signed [63:0] torque_x,
-    input  wire signed [63:0] torque_y,
-    input  wire signed [63:0] torque_z,
+    input  wire [6*64-1:0] wrench, // forces in x, y, z, torques in x, y, z, the first in the lowest bits
     input  wire [63:0] friction_quotient,
     input  wire signed [9:0] friction_exponent,
     input  wire signed [31:0] angle, // 29 fraction bits
@@ -71,19 +66,19 @@ module sptfra_output_word #(
             case (word_2)
                 4'd0: summary_3 <= {32'd0, frame_2, status};
                 4'd1: summary_3 <= {32'd0, timestamp};
-                4'd2: summary_3 <= force_x;
-                4'd3: summary_3 <= force_y;
-                4'd4: summary_3 <= force_z;
+                4'd2: summary_3 <= wrench[64*0 +: 64];
+                4'd3: summary_3 <= wrench[64*1 +: 64];
+                4'd4: summary_3 <= wrench[64*2 +: 64];
                 4'd5: begin
-                    summary_3 <= torque_x;
+                    summary_3 <= wrench[64*3 +: 64];
                     summary_exponent_3 <= TORQUE_EXPONENT - scale_exponent;
                 end
                 4'd6: begin
-                    summary_3 <= torque_y;
+                    summary_3 <= wrench[64*4 +: 64];
                     summary_exponent_3 <= TORQUE_EXPONENT - scale_exponent;
                 end
                 4'd7: begin
-                    summary_3 <= torque_z;
+                    summary_3 <= wrench[64*5 +: 64];
                     summary_exponent_3 <= TORQUE_EXPONENT - scale_exponent;
                 end
                 4'd8: begin

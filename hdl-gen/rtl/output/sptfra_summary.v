@@ -32,12 +32,7 @@ module sptfra_summary #(
     output reg  signed [17:0] mu_x, // 16 fraction bits
     output reg  signed [17:0] mu_y,
     output reg  dependent_clipped, // the dependent component left [-2, 2)
-    output reg  signed [63:0] force_x,
-    output reg  signed [63:0] force_y,
-    output reg  signed [63:0] force_z,
-    output reg  signed [63:0] torque_x,
-    output reg  signed [63:0] torque_y,
-    output reg  signed [63:0] torque_z,
+    output reg  [6*64-1:0] wrench, // forces in x, y, z, torques in x, y, z, the first in the lowest bits
     output wire [63:0] friction_quotient,
     output reg  signed [9:0] friction_exponent,
     output wire signed [31:0] angle,
@@ -52,6 +47,9 @@ module sptfra_summary #(
     localparam signed [26:0] INVERSE_GAIN = 27'sd40752055;
     localparam signed [17:0] ONE = 18'sd65536;
 
+    wire signed [63:0] force_x = wrench[64*0 +: 64];
+    wire signed [63:0] force_y = wrench[64*1 +: 64];
+    wire signed [63:0] force_z = wrench[64*2 +: 64];
     reg [2:0] state;
     reg [5:0] step;
 
@@ -250,12 +248,12 @@ module sptfra_summary #(
         if (resultants) begin
             case (step)
                 6'd12, 6'd18, 6'd24, 6'd30, 6'd36, 6'd42: high_part <= accumulator;
-                6'd15: force_x <= joined;
-                6'd21: force_y <= joined;
-                6'd27: force_z <= joined;
-                6'd33: torque_x <= joined;
-                6'd39: torque_y <= joined;
-                6'd45: torque_z <= joined;
+                6'd15: wrench[64*0 +: 64] <= joined;
+                6'd21: wrench[64*1 +: 64] <= joined;
+                6'd27: wrench[64*2 +: 64] <= joined;
+                6'd33: wrench[64*3 +: 64] <= joined;
+                6'd39: wrench[64*4 +: 64] <= joined;
+                6'd45: wrench[64*5 +: 64] <= joined;
                 default: ;
             endcase
         end

@@ -1,5 +1,4 @@
 rtl/small_4x3.v
-rtl/sptfra_adder_tree.v
 rtl/sptfra_axis_skid.v
 rtl/sptfra_butterfly.v
 rtl/sptfra_bz.v
@@ -48,6 +47,7 @@ rtl/sptfra_summary.v
 rtl/sptfra_taxel_stream.v
 rtl/sptfra_taxel_walk.v
 rtl/sptfra_times_index.v
+rtl/sptfra_tree.v
 rtl/sptfra_turns.v
 rtl/sptfra_unfold.v
 rtl/sptfra_we.v

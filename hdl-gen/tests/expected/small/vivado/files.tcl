@@ -14,7 +14,6 @@ set root [file dirname [file dirname [file normalize [info script]]]]
 set rtl {}
 foreach file {
     small_4x3.v
-    sptfra_adder_tree.v
     sptfra_axis_skid.v
     sptfra_butterfly.v
     sptfra_bz.v
@@ -63,6 +62,7 @@ foreach file {
     sptfra_taxel_stream.v
     sptfra_taxel_walk.v
     sptfra_times_index.v
+    sptfra_tree.v
     sptfra_turns.v
     sptfra_unfold.v
     sptfra_we.v
