@@ -151,43 +151,20 @@ module sptfra_contact_counter #(
         .last          (last_step)
     );
 
-    // ---- A cycle behind: its component. Three more: the components' sums, and the count
-    wire is_seed;
-    wire begins;
-    wire [LABEL_WIDTH-1:0] label;
-    wire joins;
-    wire [LABEL_WIDTH-1:0] joined;
-    wire [3:0] found;
+    wire [3:0] found; // four cycles behind
 
-    sptfra_component_labels #(
-        .COLUMNS (COLUMNS)
-    ) component_labels (
-        .clock   (clock),
-        .clear   (start),
-        .step    (step),
-        .seed    (seed),
-        .fresh   (fresh),
-        .counts  (is_seed),
-        .begins  (begins),
-        .label   (label),
-        .joins   (joins),
-        .joined  (joined)
-    );
-
-    sptfra_component_sums #(
-        .DATA_BITS   (DATA_BITS),
-        .SUM_BITS    (SUM_BITS),
-        .LABEL_WIDTH (LABEL_WIDTH)
-    ) component_sums (
-        .clock  (clock),
-        .clear  (start),
-        .least  (least),
-        .counts (is_seed),
-        .begins (begins),
-        .label  (label),
-        .joins  (joins),
-        .joined (joined),
-        .weight (weight),
+    sptfra_components #(
+        .COLUMNS   (COLUMNS),
+        .DATA_BITS (DATA_BITS),
+        .SUM_BITS  (SUM_BITS)
+    ) components (
+        .clock    (clock),
+        .clear    (start),
+        .least    (least),
+        .step     (step),
+        .seed     (seed),
+        .fresh    (fresh),
+        .weight   (weight),
         .contacts (found)
     );
 

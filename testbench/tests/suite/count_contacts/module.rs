@@ -144,11 +144,11 @@ fn components_are_counted_as_the_model_counts_them() {
 fn faults_are_noticed() {
     let faults = some_of([
         // One taxel of a component that is joined gets its new label.
-        ("component_labels", "meets && (old == above)", "meets && (old == above) && (index == COLUMNS)"),
-        ("component_labels", "(above != own)", "1'b1"),
-        ("component_sums", "joins ? sums[joined] : NOTHING", "NOTHING"),
-        ("component_sums", "(joined_1 >= least)", "1'b0"),
-        ("component_sums", "was_contact && !begins_2", "was_contact"),
+        ("components", "meets && (old == above)", "meets && (old == above) && (index == COLUMNS)"),
+        ("components", "(above != own)", "1'b1"),
+        ("components", "joins ? sums[joined] : NOTHING", "NOTHING"),
+        ("components", "(joined_2 >= least)", "1'b0"),
+        ("components", "was_contact && !begins_3", "was_contact"),
         ("weight_raster", "!borders[3] && (weight_3 > limit)", "(weight_3 > limit)"),
         ("weight_totals", "counts_1[index] ?", "1'b1 ?"),
         ("contact_counter", "left + {3'd0, done}", "left"),
