@@ -134,15 +134,14 @@ module sptfra_search_cells #(
                 assign terms[48*index +: 48] = sums[48*(POINTS*index + point) +: 48];
             end
 
-            sptfra_adder_tree #(
+            sptfra_tree #(
                 .COUNT (CELLS),
                 .WIDTH (48)
             ) tree (
-                .clock (clock),
-                .terms (terms),
-                .left  (total_left),
-                .right (total_right),
-                .sum   (total)
+                .clock   (clock),
+                .numbers (terms),
+                .halves  ({total_right, total_left}),
+                .result  (total)
             );
 
             assign totals[48*point +: 48] = total;

@@ -73,6 +73,7 @@ module sptfra_frame_scale #(
     generate
         for (candidate = 0; candidate < CANDIDATES; candidate = candidate + 1) begin : gen_candidates
             wire [27*SAMPLES-1:0] magnitudes;
+            wire [2*27-1:0] halves;
             wire [26:0] largest;
             reg [26:0] most;
             wire [5:0] most_bits; // two cycles behind
@@ -93,12 +94,15 @@ module sptfra_frame_scale #(
                 end
             end
 
-            sptfra_largest #(
-                .COUNT (SAMPLES)
+            sptfra_tree #(
+                .COUNT   (SAMPLES),
+                .WIDTH   (27),
+                .LARGEST (1)
             ) largest_of_beat (
                 .clock   (clock),
                 .numbers (magnitudes),
-                .largest (largest)
+                .halves  (halves),
+                .result  (largest)
             );
 
             sptfra_leading_bit #(
@@ -124,7 +128,7 @@ module sptfra_frame_scale #(
                 end
             end
 
-            wire _unused_bits = &{1'b0, most_bits};
+            wire _unused_bits = &{1'b0, most_bits, halves};
         end
     endgenerate
 

@@ -138,26 +138,33 @@ module sptfra_smoothing #(
 
     // ---- Largest stress and step, and the limit
     wire [26:0] magnitude, step;
+    wire [2*27-1:0] magnitude_halves, step_halves; // not needed
     reg [26:0] most;
     reg [26:0] most_step;
     wire signed [44:0] product_low, product_high; // the product is their sum
     reg [44:0] limit;
     wire restarts = !holds || ({18'd0, most_step} > limit);
 
-    sptfra_largest #(
-        .COUNT (SAMPLES)
+    sptfra_tree #(
+        .COUNT   (SAMPLES),
+        .WIDTH   (27),
+        .LARGEST (1)
     ) largest_magnitude (
         .clock   (clock),
         .numbers (magnitudes_1),
-        .largest (magnitude)
+        .halves  (magnitude_halves),
+        .result  (magnitude)
     );
 
-    sptfra_largest #(
-        .COUNT (SAMPLES)
+    sptfra_tree #(
+        .COUNT   (SAMPLES),
+        .WIDTH   (27),
+        .LARGEST (1)
     ) largest_step (
         .clock   (clock),
         .numbers (steps_3),
-        .largest (step)
+        .halves  (step_halves),
+        .result  (step)
     );
 
     sptfra_multiply multiplier (
@@ -230,7 +237,7 @@ module sptfra_smoothing #(
         end
     end
 
-    wire _unused = &{1'b0, LAST_WIDE, takes};
+    wire _unused = &{1'b0, LAST_WIDE, takes, magnitude_halves, step_halves};
 
 endmodule
 

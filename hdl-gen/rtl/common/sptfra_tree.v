@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Sum of many terms by a tree of adders with a register behind each. Latency: a cycle for each level, that is the
-// logarithm of COUNT; one sum a cycle. A single term passes at once.
+// Tree of registers over a few numbers: their sum, or with LARGEST the largest of them, unsigned.
 //
-// The two halves that the last adder adds are outputs too, a cycle before the sum, for what is decided beside it.
+// Latency: the logarithm of their count, rounded up; of one number, none. The halves come a cycle before.
 
 `default_nettype none
 
-module sptfra_adder_tree #(
-    // Terms
+module sptfra_tree #(
+    // Numbers
     parameter integer COUNT = 5,
-    // Bits of a term and of the sum, which wraps
-    parameter integer WIDTH = 48
+    // Bits of a number and of the result; a sum wraps
+    parameter integer WIDTH = 48,
+    parameter integer LARGEST = 0
 ) (
     input  wire clock,
-    input  wire [WIDTH*COUNT-1:0] terms,
-    output wire [WIDTH-1:0] left,
-    output wire [WIDTH-1:0] right,
-    output wire [WIDTH-1:0] sum
+    input  wire [WIDTH*COUNT-1:0] numbers,
+    output wire [2*WIDTH-1:0] halves,
+    output wire [WIDTH-1:0] result
 );
 
     localparam integer LEAVES = 1 << $clog2(COUNT);
@@ -26,35 +25,35 @@ module sptfra_adder_tree #(
     genvar index;
     generate
         if (COUNT == 1) begin : gen_single
-            assign left = terms;
-            assign right = {WIDTH{1'b0}};
-            assign sum = terms;
+            assign halves = {{WIDTH{1'b0}}, numbers};
+            assign result = numbers;
 
             wire _unused = clock;
         end else begin : gen_levels
-            // Node 1 is the root; the children of node n are 2 n and 2 n + 1; nodes from LEAVES on are the terms
+            // Node 1 is the root; the children of node n are 2 n and 2 n + 1; nodes from LEAVES on are the numbers
             wire [WIDTH*LEAVES*2-1:0] nodes;
 
             for (index = LEAVES; index < 2 * LEAVES; index = index + 1) begin : gen_leaves
                 if (index < LEAVES + COUNT) begin : gen_term
-                    assign nodes[WIDTH*index +: WIDTH] = terms[WIDTH*(index - LEAVES) +: WIDTH];
+                    assign nodes[WIDTH*index +: WIDTH] = numbers[WIDTH*(index - LEAVES) +: WIDTH];
                 end else begin : gen_zero
                     assign nodes[WIDTH*index +: WIDTH] = {WIDTH{1'b0}};
                 end
             end
             for (index = 1; index < LEAVES; index = index + 1) begin : gen_tree
+                wire [WIDTH-1:0] left = nodes[WIDTH*(2*index) +: WIDTH];
+                wire [WIDTH-1:0] right = nodes[WIDTH*(2*index + 1) +: WIDTH];
                 reg [WIDTH-1:0] node;
 
                 always @(posedge clock) begin
-                    node <= nodes[WIDTH*(2*index) +: WIDTH] + nodes[WIDTH*(2*index + 1) +: WIDTH];
+                    node <= (LARGEST == 0) ? left + right : (left > right) ? left : right;
                 end
 
                 assign nodes[WIDTH*index +: WIDTH] = node;
             end
             assign nodes[WIDTH-1:0] = {WIDTH{1'b0}};
-            assign left = nodes[WIDTH*2 +: WIDTH];
-            assign right = nodes[WIDTH*3 +: WIDTH];
-            assign sum = nodes[WIDTH +: WIDTH];
+            assign halves = nodes[WIDTH*2 +: 2*WIDTH];
+            assign result = nodes[WIDTH +: WIDTH];
 
             wire _unused = &{1'b0, nodes[WIDTH-1:0]};
         end
