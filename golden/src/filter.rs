@@ -1,5 +1,7 @@
 //! Sparse filters: which entries of the 13 matrices are kept.
 
+use std::sync::Arc;
+
 use nalgebra::DMatrix;
 use nalgebra_sparse::{CooMatrix, CsrMatrix};
 
@@ -61,7 +63,7 @@ pub enum FilterError {
 /// The 13 matrices after the filter, in compressed sparse row form.
 #[derive(Clone, Debug)]
 pub struct FilteredMatrices {
-    thirteen: Vec<CsrMatrix<f64>>,
+    thirteen: Vec<Arc<CsrMatrix<f64>>>,
 }
 
 impl FilteredMatrices {
@@ -75,11 +77,21 @@ impl FilteredMatrices {
             .into_iter()
             .map(|name| {
                 let filter = filter.of(name).ok_or(FilterError::Unresolved)?;
-                let sparse = apply(&matrices.dense(name), filter);
-                check(name, &sparse, filter)?;
-                Ok(sparse)
+                filtered(matrices, name, filter).map(Arc::new)
             })
             .collect::<Result<_, FilterError>>()?;
+        Ok(Self { thirteen })
+    }
+
+    /// These with another filter of one matrix.
+    pub(crate) fn with(
+        &self,
+        matrices: &Matrices,
+        name: MatrixName,
+        filter: MatrixFilter,
+    ) -> Result<Self, FilterError> {
+        let mut thirteen = self.thirteen.clone();
+        thirteen[name.index()] = Arc::new(filtered(matrices, name, filter)?);
         Ok(Self { thirteen })
     }
 
@@ -145,7 +157,7 @@ pub fn apply(matrix: &DMatrix<f64>, filter: MatrixFilter) -> CsrMatrix<f64> {
 }
 
 /// Whether the filter keeps the entry at `(row, column)` of the matrix.
-pub(crate) fn rule(matrix: &DMatrix<f64>, filter: MatrixFilter) -> impl Fn(usize, usize) -> bool {
+fn rule(matrix: &DMatrix<f64>, filter: MatrixFilter) -> impl Fn(usize, usize) -> bool {
     let thresholds: Vec<f64> = match filter {
         MatrixFilter::F2 { p } => matrix.row_iter().map(|row| row.max() / (1000.0 * p)).collect(),
         MatrixFilter::None | MatrixFilter::F1 { .. } => Vec::new(),
@@ -157,12 +169,14 @@ pub(crate) fn rule(matrix: &DMatrix<f64>, filter: MatrixFilter) -> impl Fn(usize
     }
 }
 
-fn check(name: MatrixName, matrix: &CsrMatrix<f64>, filter: MatrixFilter) -> Result<(), FilterError> {
+/// One of the 13 matrices after its filter, no row of it empty.
+fn filtered(matrices: &Matrices, name: MatrixName, filter: MatrixFilter) -> Result<CsrMatrix<f64>, FilterError> {
+    let matrix = apply(&matrices.dense(name), filter);
     if matrix.nnz() == 0 {
         return Err(FilterError::EmptyMatrix { matrix: name, filter });
     }
     match matrix.row_iter().position(|row| row.nnz() == 0) {
         Some(row) => Err(FilterError::EmptyRow { matrix: name, row, filter }),
-        None => Ok(()),
+        None => Ok(matrix),
     }
 }

@@ -5,7 +5,6 @@
 //! design's own estimator.
 
 mod scenes;
-mod trial;
 
 pub use scenes::{rebase_scenes, reference_frames};
 
@@ -19,7 +18,6 @@ use crate::filter::{FilterError, FilteredMatrices};
 use crate::matrices::{Matrices, MatrixError, MatrixName};
 use crate::scene::{SceneError, SceneFrame};
 use crate::solver::{Solver, SolverError};
-use trial::Trial;
 
 /// Why no choice can be made.
 #[derive(Debug, thiserror::Error)]
@@ -155,35 +153,33 @@ pub fn choose(design: &Design, frames: &[SceneFrame], tick: &(dyn Fn() + Sync)) 
     // Scenes are in pascals, whatever the sensor counts.
     let design = &Design { input: Input::default(), ..design.clone() };
     let matrices = Matrices::of(design)?;
-    let trial = Trial::new(design, &matrices, frames)?;
+    let whole = FilteredMatrices::new(&matrices, &Filter::None)?;
+    let error = |filtered| mean_error(&Solver::from_parts(design, matrices.clone(), filtered), frames);
     let filters = candidate_filters(design.sensor.taxels());
     let pairs: Vec<_> =
         MatrixName::ALL.into_iter().flat_map(|matrix| filters.iter().map(move |&filter| (matrix, filter))).collect();
-    let mut candidates: Vec<Candidate> = pairs
+    let mut candidates = pairs
         .into_par_iter()
         .map(|(matrix, filter)| {
-            let (nnz, e_mu) = trial.judge(matrix, filter);
+            let filtered = whole.with(&matrices, matrix, filter)?;
+            let nnz = filtered.nnz(matrix);
+            let e_mu = error(filtered)?;
             tick();
-            Candidate { matrix, filter, nnz, e_mu, cost: e_mu * nnz as f64, chosen: false }
+            Ok(Candidate { matrix, filter, nnz, e_mu, cost: e_mu * nnz as f64, chosen: false })
         })
-        .collect();
+        .collect::<Result<Vec<_>, ChooseError>>()?;
     for of_matrix in candidates.chunks_mut(filters.len()) {
         // `min_by` keeps the first of equal ones.
         if let Some(best) = of_matrix.iter_mut().min_by(|a, b| a.cost.total_cmp(&b.cost)) {
             best.chosen = true;
         }
     }
-    let mut choice = Choice {
-        candidates,
-        frames: frames.len(),
-        e_mu_unfiltered: trial.unfiltered(),
-        e_mu_chosen: 0.0,
-        nnz_chosen: 0,
-    };
+    let mut choice =
+        Choice { candidates, frames: frames.len(), e_mu_unfiltered: error(whole)?, e_mu_chosen: 0.0, nnz_chosen: 0 };
     let together = Filter::F3 { scenes: Vec::new(), choices: Some(Box::new(choice.choices())) };
     let filtered = FilteredMatrices::new(&matrices, &together)?;
     choice.nnz_chosen = MatrixName::ALL.into_iter().map(|name| filtered.nnz(name)).sum();
-    choice.e_mu_chosen = mean_error(&Solver::from_parts(design, matrices.clone(), filtered), frames)?;
+    choice.e_mu_chosen = error(filtered)?;
     Ok(choice)
 }
 
