@@ -4,9 +4,6 @@
 //! ([`ProductList::fewer_products`]), the parity fold ([`ProductList::folded`]), the diagonal mirror
 //! ([`ProductList::mirrored`]). [`Frame::step`] executes the steps of a list in any [`Arithmetic`]: here in f64 and f32, frame by frame
 //! or many at a time; a generator of hardware brings integers.
-//!
-//! [`crate::solver::we`], [`crate::solver::co`] and [`crate::solver::op`] compute the same as the paper writes it, block
-//! by block, with nothing of this.
 
 pub(crate) mod batch;
 mod float;

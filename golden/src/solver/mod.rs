@@ -1,20 +1,15 @@
 //! The reference solver: one frame of normal stress in, forces and friction out.
 //!
-//! The stages are those of the paper's hardware, each a function of its own: [`cean`] (contact analysis), [`we`]
-//! (weights), [`co`] (coefficients), [`op`] (optimum). [`Solver`] runs them and takes care of frames that have no
-//! answer, which get a [`Status`] and zeros, never a NaN. It executes the products of the design's plan as a list, see
-//! [`crate::products`]; with the reduced plan that is the same mathematics on folded vectors. A design may ask for another estimator of friction than the
-//! paper's, with either plan.
+//! [`Solver`] analyses the contact ([`cean`]), executes the products of the design's plan as a list ([`crate::products`]) and
+//! finds the friction by the design's estimator. With the reduced plan that is the same mathematics on folded vectors. A frame
+//! without an answer gets a [`Status`] and zeros, never a NaN.
 
 mod batch;
 pub mod cean;
-pub mod co;
 mod cores;
-pub mod op;
 pub(crate) mod reading;
 mod separate;
 mod slips;
-pub mod we;
 mod workspace;
 
 pub use crate::status::Status;
@@ -161,9 +156,14 @@ impl Solution {
                 self.status.insert(Status::LOW_CONFIDENCE);
             }
         }
-        (self.mu, self.phi) = (op::quotient(resultant), fy.atan2(fx));
+        (self.mu, self.phi) = (quotient(resultant), fy.atan2(fx));
         mu
     }
+}
+
+/// Friction of a resultant: tangential over normal force, 0 where there is no normal force (Eq. 29).
+fn quotient([x, y, z]: [f64; 3]) -> f64 {
+    if z == 0.0 { 0.0 } else { x.hypot(y) / z.abs() }
 }
 
 /// Everything that stays the same from frame to frame.

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::{Solution, Solver, Status, Workspace, op};
+use super::{Solution, Solver, Status, Workspace, quotient};
 use crate::contacts::{ContactForces, Found};
 use crate::matrices::{Matrices, MatrixName};
 use crate::parity::CLASSES;
@@ -230,7 +230,7 @@ impl Solution {
     /// Sets what follows from the sums over several contacts: friction, direction, and the status bits of all.
     fn sum_up(&mut self) {
         let [x, y, z] = self.resultant;
-        (self.mu, self.phi) = (op::quotient(self.resultant), y.atan2(x));
+        (self.mu, self.phi) = (quotient(self.resultant), y.atan2(x));
         [self.mu_x, self.mu_y] = [x, y].map(|force| if z == 0.0 { 0.0 } else { force / z.abs() });
         self.status.remove(ContactForces::bits_of(self.status));
         self.records.iter().for_each(|contact| self.status.insert(contact.status));

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use crate::designs::design;
+use crate::stages;
 use golden::design::{Design, Kernel};
 use golden::estimators::line;
 use golden::kernel;
 use golden::metrics::{ErrorSummary, Outcome, errors};
 use golden::scene::{Scene, SceneFrame};
-use golden::solver::{Solution, Solver, Status, cean, co, op, we};
+use golden::solver::{Solution, Solver, Status, cean};
 use nalgebra::DVector;
 use proptest::prelude::*;
 
@@ -87,9 +88,8 @@ fn pairs_at_level(name: &str, scene: &str, level: f64, every: usize) -> Vec<(Out
             let b = DVector::from_vec(frame.stress.clone());
             let contact = cean::cean(&b, &positions, design.algorithm.noise_floor_pa);
             let filtered = solver.filtered().unwrap();
-            let weights = we::we(&b, filtered);
-            let coefficients = co::co(&b, &weights, filtered);
-            let forces = op::op(&contact, &coefficients, solver.matrices(), level);
+            let coefficients = stages::co(&b, &stages::we(&b, filtered), filtered);
+            let forces = stages::op(&contact, &coefficients, solver.matrices(), level);
             let found = Outcome { force: forces.resultant, friction: forces.mu, direction: forces.phi };
             (Outcome::from(frame), found)
         })

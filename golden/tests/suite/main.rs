@@ -32,5 +32,6 @@ mod samples;
 mod scene_file;
 mod separate;
 mod smoothing;
+mod stages;
 mod thin;
 mod workspace;

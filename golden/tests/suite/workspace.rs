@@ -5,8 +5,10 @@ use std::cell::Cell;
 
 use golden::design::{Correction, Design, Estimator, Filter, JointConstants, MatrixFilter, Outputs, PlanKind, Slip};
 use golden::estimators::line;
-use golden::solver::{PIECE, Past, Slips, Solution, Solver, Status, co, op, we};
+use golden::solver::{PIECE, Past, Slips, Solution, Solver, Status};
 use nalgebra::DVector;
+
+use crate::stages;
 
 /// Counts what this thread asks for; the other topics' tests run on other threads.
 struct Counting;
@@ -225,9 +227,10 @@ fn the_papers_plan_is_its_stages() {
         let solution = solver.solve(frame).unwrap();
         let b = DVector::from_vec(frame.clone());
         let contact = golden::solver::cean::cean(&b, &positions, design.algorithm.noise_floor_pa);
-        let coefficients = co::co(&b, &we::we(&b, filtered), filtered);
-        let forces = op::op(&contact, &coefficients, solver.matrices(), line::LEVEL);
-        assert!((forces.mu_x - solution.mu_x).abs() < 1e-10 && (forces.mu_y - solution.mu_y).abs() < 1e-10);
+        let coefficients = stages::co(&b, &stages::we(&b, filtered), filtered);
+        let forces = stages::op(&contact, &coefficients, solver.matrices(), line::LEVEL);
+        let [mu_x, mu_y] = forces.friction;
+        assert!((mu_x - solution.mu_x).abs() < 1e-10 && (mu_y - solution.mu_y).abs() < 1e-10);
         for (p, component) in solution.field.iter().enumerate() {
             let error = (DVector::from_vec(component.clone()) - &forces.field[p]).amax();
             assert!(error < 1e-10 * forces.field[2].amax(), "{error:e}");

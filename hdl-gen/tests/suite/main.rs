@@ -17,4 +17,7 @@ mod rooms;
 mod savings;
 mod scale;
 mod schedule;
+#[allow(dead_code, reason = "shared with the tests of golden, which use all of it")]
+#[path = "../../../golden/tests/suite/stages.rs"]
+mod stages;
 mod support;

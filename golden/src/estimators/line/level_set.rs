@@ -16,7 +16,7 @@ pub(super) struct LevelSet {
 
 /// Memory of the search, to be used again for the next frame.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct LineScratch {
+pub struct LineScratch {
     /// The hinges.
     pub(super) alpha: Vec<f64>,
     pub(super) beta: Vec<f64>,

@@ -6,7 +6,7 @@ mod thin;
 
 use super::seen::{Contact, RANGE};
 use crate::status::Status;
-pub(crate) use level_set::LineScratch;
+pub use level_set::LineScratch;
 pub(crate) use thin::thin;
 
 /// Coefficients of the line at or above this magnitude make it degenerate: it is then all but parallel to the axis
@@ -46,7 +46,7 @@ pub fn line(direction: [f64; 2], sums: &[[f64; 3]]) -> Option<Line> {
 ///
 /// `sums` are the `G_pq` and `u` the stresses `C33 g_3q` in pascals. Without a direction, or with a degenerate line,
 /// the components are 0, and the status says why.
-pub(crate) fn friction(
+pub fn friction(
     contact: &Contact,
     sums: &[[f64; 3]],
     u: [&[f64]; 3],

@@ -11,8 +11,6 @@ use std::f64::consts::TAU;
 use golden::design::{Design, PlanKind};
 use golden::parity::FoldedMatrix;
 use golden::solver::cean::cean;
-use golden::solver::co::co;
-use golden::solver::we::we;
 use golden::solver::{Solution, Solver};
 use hdl_gen::model::{AT_BOUND, Model, SUMMARY_WORDS};
 use hdl_gen::plan::Plan;
@@ -22,6 +20,7 @@ use hdl_gen::plan::product::Vector;
 use nalgebra::DVector;
 use proptest::prelude::*;
 
+use crate::stages::{co, we};
 use crate::support::{any_design, any_paper_design, design_text};
 
 /// A sliding contact: an ellipsoid of pressure, and friction along one direction.
