@@ -14,23 +14,11 @@ pub struct OutputError {
     source: io::Error,
 }
 
-/// Prints a line to standard output. A reader that has gone away, as after `| head`, is no error.
+/// Prints a text as it is to standard output. A reader that has gone away, as after `| head`, is no error.
 ///
 /// # Errors
 ///
 /// When standard output cannot be written, for instance a full disk behind it.
-pub fn print_line(text: std::fmt::Arguments<'_>) -> io::Result<()> {
-    match writeln!(io::stdout().lock(), "{text}") {
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        result => result,
-    }
-}
-
-/// Prints a text as it is to standard output, in the manner of [`print_line`].
-///
-/// # Errors
-///
-/// As [`print_line`].
 pub fn print_text(text: &str) -> io::Result<()> {
     match io::stdout().lock().write_all(text.as_bytes()) {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use golden::check::{Beyond, beyond as count_beyond, check as look_for_faults};
 use golden::design::Calibration;
-use golden::frames::{Layout, read_frames_and_remark};
+use golden::frames::{Layout, read_recording};
 use golden::geometry;
 use golden::matrices::Matrices;
 use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
@@ -40,13 +40,13 @@ pub fn load_frames<'py>(
         ));
     }
     let layout = Layout { labels, columns, skip_lines, skip_bad };
-    let (frames, remark) = without_lock(py, || {
+    let recording = without_lock(py, || {
         geometry::compare(&path, &design.name, &design.sensor)?;
-        read_frames_and_remark(&path, design, layout)
+        read_recording(&path, design, layout)
     })?;
-    warn(py, remark)?;
-    let shape = [frames.len(), design.sensor.rows, design.sensor.columns];
-    array(py, frames.concat(), &shape)
+    warn(py, recording.remark)?;
+    let shape = [recording.frames.len(), design.sensor.rows, design.sensor.columns];
+    array(py, recording.frames.concat(), &shape)
 }
 
 /// Says what is to be known of a header.

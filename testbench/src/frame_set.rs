@@ -4,7 +4,7 @@ use std::path::Path;
 
 use golden::design::{Design, Sensor};
 use golden::forces::{self, read_outcomes};
-use golden::frames::{FrameError, Layout, read_frames_and_remark};
+use golden::frames::{FrameError, Frames, Layout, read_recording};
 use golden::geometry;
 use golden::metrics::Outcome;
 use golden::scene::{Scene, SceneError, SceneFrame};
@@ -77,7 +77,7 @@ impl FrameSet {
         design: &Design,
     ) -> Result<Self, FrameError> {
         geometry::compare(frames, &design.name, &design.sensor)?;
-        let (stress, remark) = read_frames_and_remark(frames, design, layout)?;
+        let Frames { frames: stress, remark, .. } = read_recording(frames, design, layout)?;
         if let Some(reference) = reference {
             forces::compare_sensor(reference, &design.name, &design.sensor)?;
         }

@@ -184,11 +184,6 @@ impl Design {
         self.to_toml_with(&FileNames::default())
     }
 
-    /// As [`Design::to_toml`], with another name than [`WEIGHTS_FILE`]: several designs of a folder each have weights.
-    pub fn to_toml_naming(&self, weights: &str) -> String {
-        self.to_toml_with(&FileNames { weights: weights.to_owned(), ..FileNames::default() })
-    }
-
     /// As [`Design::to_toml`], with other names for the files beside it.
     pub fn to_toml_with(&self, names: &FileNames) -> String {
         toml::to_string(&resolve::keys(self, names)).unwrap_or_default()

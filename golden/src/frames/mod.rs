@@ -29,9 +29,6 @@ use crate::design::Design;
 use crate::output;
 use crate::sensor::Sensor;
 
-/// Frames, one value for each taxel, and a remark about the file they are from.
-pub type WithRemark = (Vec<Vec<f64>>, Option<String>);
-
 /// Frames of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frames {
@@ -43,26 +40,13 @@ pub struct Frames {
     pub remark: Option<String>,
 }
 
-/// Reads all frames of a file; each has a finite value for each taxel of the sensor.
+/// Reads all frames of a file; each has a finite value for each taxel of the sensor. The values stand where `layout` says: a
+/// number is that of columns of any text before them.
 ///
 /// # Errors
 ///
 /// [`FrameError`], with file, line and column, for the first line that is no frame, and for a `.npy` file of another shape.
-pub fn read_frames(path: &Path, sensor: &Sensor) -> Result<Vec<Vec<f64>>, FrameError> {
-    read_labelled_frames(path, sensor, 0)
-}
-
-/// As [`read_frames`], of a file whose values stand where `layout` says: a number is that of columns of any text before
-/// them.
-///
-/// # Errors
-///
-/// As [`read_frames`].
-pub fn read_labelled_frames(
-    path: &Path,
-    sensor: &Sensor,
-    layout: impl Into<Layout>,
-) -> Result<Vec<Vec<f64>>, FrameError> {
+pub fn read_frames(path: &Path, sensor: &Sensor, layout: impl Into<Layout>) -> Result<Vec<Vec<f64>>, FrameError> {
     Ok(read_text(path, &layout.into(), &sensor.into())?.rows)
 }
 
@@ -78,31 +62,8 @@ fn read_text(path: &Path, layout: &Layout, target: &Target) -> Result<Text, Fram
     }
 }
 
-/// Reads the frames of a design: as [`read_labelled_frames`], and each value is one that the design's samples can be. Of a
-/// dead taxel any text is read, as 0.
-///
-/// # Errors
-///
-/// As [`read_frames`].
-pub fn read_frames_of(path: &Path, design: &Design, layout: impl Into<Layout>) -> Result<Vec<Vec<f64>>, FrameError> {
-    Ok(read_recording(path, design, layout)?.frames)
-}
-
-/// As [`read_frames_of`], and what is to be said of the file, as of a first line that holds the numbers of the columns.
-///
-/// # Errors
-///
-/// As [`read_frames`].
-pub fn read_frames_and_remark(
-    path: &Path,
-    design: &Design,
-    layout: impl Into<Layout>,
-) -> Result<WithRemark, FrameError> {
-    let Frames { frames, remark, .. } = read_recording(path, design, layout)?;
-    Ok((frames, remark))
-}
-
-/// As [`read_frames_of`], with the times of the frames and what is to be said of the file.
+/// Reads the frames of a design, with their times and what is to be said of the file: as [`read_frames`], and each value is one
+/// that the design's samples can be. Of a dead taxel any text is read, as 0.
 ///
 /// # Errors
 ///

@@ -36,7 +36,7 @@ impl FrameLines {
     ///
     /// # Errors
     ///
-    /// As [`super::read_frames_of`], with the number of the line; the next one may be good again.
+    /// As [`super::read_recording`], with the number of the line; the next one may be good again.
     pub fn frame(&mut self, line: &[u8]) -> Result<Option<Vec<f64>>, FrameError> {
         let taxels = self.taxels;
         let Some(frame) = self.lines.row(line, |found| (found != taxels).then_some(taxels))? else { return Ok(None) };

@@ -26,7 +26,7 @@ struct Frame {
 
 fn frames(sensor: &str) -> Vec<Frame> {
     let file = repository(&format!("data/fe/{sensor}.csv"));
-    let stress = read_frames(&file, &design(&format!("{sensor}-fast")).sensor).unwrap();
+    let stress = read_frames(&file, &design(&format!("{sensor}-fast")).sensor, 0).unwrap();
     let truth = read_outcomes(&file.with_extension("forces.csv"), stress.len()).unwrap();
     let cases = fs::read_to_string(repository("data/fe/cases.csv")).unwrap();
     let cases: Vec<Vec<&str>> = cases

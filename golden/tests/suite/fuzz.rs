@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 use crate::designs::folders;
 use golden::design::Design;
 use golden::forces::read_outcomes;
-use golden::frames::{read_labelled_frames, write_frames};
+use golden::frames::{read_frames, write_frames};
 use golden::scene::Scene;
 use golden::sensor::Sensor;
 use proptest::prelude::*;
@@ -170,7 +170,7 @@ proptest! {
         bytes[place] = byte;
         bytes.truncate(bytes.len() - cut);
         fs::write(&path, bytes).expect("writable");
-        match read_labelled_frames(&path, &four(), 0) {
+        match read_frames(&path, &four(), 0) {
             Ok(frames) => prop_assert!(frames.iter().flatten().all(|value| value.is_finite())),
             Err(error) => prop_assert!(is_a_message(&error.to_string()), "{}", error),
         }
@@ -187,7 +187,7 @@ proptest! {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("fuzzed.csv");
         fs::write(&path, changed(&lines.join("\n"), &changes)).expect("writable");
-        match read_labelled_frames(&path, &four(), labels) {
+        match read_frames(&path, &four(), labels) {
             Ok(frames) => {
                 prop_assert!(frames.iter().all(|frame| frame.len() == 4));
                 prop_assert!(frames.iter().flatten().all(|value| value.is_finite()));
@@ -240,7 +240,7 @@ proptest! {
         let errors = [
             Design::load(&path).err().map(|error| error.to_string()),
             Scene::load(&path).err().map(|error| error.to_string()),
-            read_labelled_frames(&path, &four(), 0).err().map(|error| error.to_string()),
+            read_frames(&path, &four(), 0).err().map(|error| error.to_string()),
             read_outcomes(&path, 1).err().map(|error| error.to_string()),
         ];
         for error in errors.into_iter().flatten() {

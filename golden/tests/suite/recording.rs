@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use golden::design::{CALIBRATION_FILE, Design, Filter, Kernel};
-use golden::frames::{FrameLines, read_frames, read_frames_and_remark, read_labelled_frames};
+use golden::frames::{FrameLines, read_frames, read_recording};
 use golden::metrics::field_error;
 use golden::sensor::Sensor;
 use golden::solver::{Solver, Status};
@@ -151,7 +151,7 @@ fn any_usual_separator_with_a_header_or_without() {
     let path = folder.path().join("frames.csv");
     let read = |text: &str| {
         fs::write(&path, text).unwrap();
-        read_frames(&path, &grid(2, 1)).map_err(|error| error.to_string())
+        read_frames(&path, &grid(2, 1), 0).map_err(|error| error.to_string())
     };
     let two = Ok(vec![vec![-1.5, 2.0], vec![3e3, 4.0]]);
     for text in [
@@ -189,7 +189,7 @@ fn numbers_of_columns_are_a_header() {
     let design = Design::from_toml(PAD, "pad.toml").unwrap();
     let read = |text: &str, labels| {
         fs::write(&path, text).unwrap();
-        read_frames_and_remark(&path, &design, labels).map_err(|error| error.to_string())
+        read_recording(&path, &design, labels).map(|read| (read.frames, read.remark)).map_err(|error| error.to_string())
     };
     let frame = vec![-7.0, -1.0, 0.0, 2.0, -3.0, 5.0];
     let line = "-7,-1,0,2,-3,5\n";
@@ -248,7 +248,7 @@ fn arrays_of_frames() {
     let path = folder.path().join("frames.npy");
     let read = |bytes: &[u8], labels| {
         fs::write(&path, bytes).unwrap();
-        read_labelled_frames(&path, &grid(3, 2), labels).map_err(|error| error.to_string())
+        read_frames(&path, &grid(3, 2), labels).map_err(|error| error.to_string())
     };
     let counted = |from: usize| (from..from + 6).map(|value| value as f64).collect::<Vec<_>>();
     let two = Ok(vec![counted(0), counted(6)]);
@@ -275,7 +275,7 @@ fn label_columns_are_skipped() {
     let path = folder.path().join("frames.csv");
     let read = |text: &str, labels| {
         fs::write(&path, text).unwrap();
-        read_labelled_frames(&path, &grid(2, 1), labels).map_err(|error| error.to_string())
+        read_frames(&path, &grid(2, 1), labels).map_err(|error| error.to_string())
     };
     let two = Ok(vec![vec![1.0, 2.0], vec![3.0, 4.0]]);
     assert_eq!(read("a,0,1,2\nb,é 1,3,4\n", 2), two);
@@ -302,13 +302,13 @@ fn label_columns_are_skipped() {
     }
     // Names that differ by their numbers alone are those of the taxels.
     let mat = file("data/bed_mat_64x27.csv");
-    assert_eq!(read_frames(&mat, &grid(27, 64)).unwrap(), read_labelled_frames(&mat, &grid(27, 64), 2).unwrap());
+    assert_eq!(read_frames(&mat, &grid(27, 64), 0).unwrap(), read_frames(&mat, &grid(27, 64), 2).unwrap());
 }
 
 #[test]
 fn the_mat_carries_the_person() {
     let mut design = Design::load(&file("designs/bed-mat.toml")).unwrap();
-    let frames = read_labelled_frames(&file("data/bed_mat_64x27.csv"), &grid(27, 64), 2).unwrap();
+    let frames = read_frames(&file("data/bed_mat_64x27.csv"), &grid(27, 64), 2).unwrap();
     assert_eq!(frames.len(), 24);
     let filtered = Solver::new(&design).unwrap();
     design.algorithm.filter = Filter::None;

@@ -1,7 +1,7 @@
 //! Integer samples: which designs have them, and which frames they take. A calibration in RAM: which designs may.
 
 use golden::design::{CalibrationIn, Design, Samples};
-use golden::frames::{read_frames_of, to_text};
+use golden::frames::{read_recording, to_text};
 
 const PAD: &str = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
      name = \"pad\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n";
@@ -35,7 +35,7 @@ fn frames_hold_what_samples_can_be() {
         let file = folder.path().join("frames.csv");
         std::fs::write(&file, text).unwrap();
         let design = pad("pa_per_count = -10.0", samples).unwrap();
-        read_frames_of(&file, &design, 0).map_err(|error| error.to_string())
+        read_recording(&file, &design, 0).map(|read| read.frames).map_err(|error| error.to_string())
     };
     assert_eq!(read("0,1,2,3\n1,2,3,-4\n", "int16").unwrap(), [[1.0, 2.0, 3.0, -4.0]]);
     assert_eq!(read("1,2,3,-4\n", "int16").unwrap(), [[1.0, 2.0, 3.0, -4.0]]);
@@ -52,7 +52,7 @@ fn frames_hold_what_samples_can_be() {
     // A header of fewer fields than there are labels.
     let file = folder.path().join("frames.csv");
     std::fs::write(&file, "recording\na,b,1,2.5,3,4\n").unwrap();
-    let error = read_frames_of(&file, &pad("pa_per_count = -10.0", "int16").unwrap(), 2).unwrap_err();
+    let error = read_recording(&file, &pad("pa_per_count = -10.0", "int16").unwrap(), 2).unwrap_err();
     assert!(error.to_string().contains("line 2, column "), "{error}");
 }
 

@@ -165,7 +165,7 @@ fn frames_for_a_design_and_for_no_other() {
     assert!(output.status.success(), "{output:?}");
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!((&report["frames"], &report["taxels"]), (&36.into(), &30.into()));
-    let counts = read_frames(&frames, &line_of(30)).unwrap();
+    let counts = read_frames(&frames, &line_of(30), 0).unwrap();
     assert!(counts.iter().flatten().all(|count| count.fract() == 0.0), "a sensor that counts");
     assert!(counts.iter().flatten().any(|&count| count > 5000.0));
     let solve = |design: &Path| sptfra(&["solve", text(design), "--frames", text(&frames), "--out", text(&forces)]);
@@ -214,7 +214,7 @@ fn suspicious_frames_are_solved_with_a_warning_and_found_by_check() {
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(output.status.success() && said.contains("36 frames") && said.contains("nothing suspicious"), "{said}");
 
-    let turned: Vec<Vec<f64>> = read_frames(&frames, &line_of(100))
+    let turned: Vec<Vec<f64>> = read_frames(&frames, &line_of(100), 0)
         .unwrap()
         .iter()
         .map(|frame| frame.iter().map(|stress| -stress).collect())
