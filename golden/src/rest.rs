@@ -5,6 +5,7 @@ use serde::Serialize;
 use crate::check::together;
 use crate::dead_taxels::MOST_DEAD;
 use crate::design::{Calibration, Design};
+use crate::numbers::sorted;
 
 /// So few frames tell no deviation.
 const FRAMES: usize = 10;
@@ -290,8 +291,7 @@ fn constant(
 }
 
 fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
+    let values = sorted(values);
     match values.len() {
         0 => 0.0,
         count => f64::midpoint(values[(count - 1) / 2], values[count / 2]),

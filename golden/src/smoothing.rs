@@ -4,6 +4,8 @@
 //! [`RESTART`] standard deviations of the noise, the frame itself is the new average of all taxels. In a steady state noise of
 //! standard deviation σ falls to `σ sqrt(2^-k / (2 - 2^-k))`.
 
+use crate::numbers::magnitude;
+
 /// Steps of so many standard deviations restart the average. By noise alone less than one in 10⁴ frames of 100 taxels has one.
 pub const RESTART: f64 = 6.0;
 
@@ -36,7 +38,7 @@ impl Smoothing {
     /// Takes a good frame into the average and puts the average in its place. Steps of `dead` taxels, whose noise is that of
     /// the sum in their place, restart nothing.
     pub fn take(&self, average: &mut Average, frame: &mut [f64], dead: &[usize]) {
-        let limit = self.limit * frame.iter().fold(0.0_f64, |largest, stress| largest.max(stress.abs()));
+        let limit = self.limit * magnitude(&*frame);
         let pairs = average.stress.iter().zip(&*frame).enumerate();
         let mut living = pairs.filter(|(taxel, _)| !dead.contains(taxel));
         if average.stress.len() != frame.len() || living.any(|(_, (average, stress))| (stress - average).abs() > limit)

@@ -5,6 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use super::CalibrateError;
 use crate::design::{Design, Sensor, Tension};
 use crate::estimators::joint::{self, Features, JointScratch, TrainingSet};
+use crate::numbers::magnitude;
 use crate::products::ByPq;
 use crate::scene::normal;
 use crate::solver::{Solver, Status, Workspace};
@@ -78,7 +79,7 @@ impl<'a> Observer<'a> {
         for stress in &mut *frame {
             *stress = tension.of(*stress);
         }
-        let peak = frame.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()));
+        let peak = magnitude(&frame);
         let deviation = noise * peak;
         // The estimator has no scale; the frame is put where neither the full scale nor the noise floor matters.
         let scale = 0.5 * self.design.hardware.full_scale_pa / peak;

@@ -8,6 +8,7 @@ use super::observer::{Observer, Sample};
 use super::{CalibrateError, Settings, Stage, random_contacts};
 use crate::design::Tension;
 use crate::estimators::joint::TrainingSet;
+use crate::numbers::middle;
 use crate::scene::{Contact, Medium, Shape, unit_responses};
 
 /// Poisson's ratio of the layers, from and to: rubber, give or take.
@@ -137,16 +138,10 @@ pub(super) fn gain_and_targets(samples: &[Sample]) -> (f64, Vec<[f64; 2]>) {
     let mut gain = 1.0;
     // F_z depends on the friction a little, and the friction wanted on the gain.
     for _ in 0..4 {
-        let mut ratios: Vec<f64> = samples
-            .iter()
-            .zip(&targets)
-            .map(|(sample, [x, y])| {
-                let [g0, g1, g2] = sample.sums[2];
-                sample.force[2] / (g0 + x * g1 + y * g2)
-            })
-            .collect();
-        ratios.sort_by(f64::total_cmp);
-        gain = ratios[ratios.len() / 2];
+        gain = middle(samples.iter().zip(&targets).map(|(sample, [x, y])| {
+            let [g0, g1, g2] = sample.sums[2];
+            sample.force[2] / (g0 + x * g1 + y * g2)
+        }));
         targets = samples.iter().map(|sample| target(sample, gain)).collect();
     }
     (gain, targets)

@@ -1,7 +1,8 @@
 //! Taxels that read what no load on the layer makes: much, where those around them read next to nothing.
 
-use super::{dead, largest_of};
+use super::dead;
 use crate::design::Design;
+use crate::numbers::magnitude;
 
 /// From so many frames on.
 const FRAMES: usize = 10;
@@ -26,7 +27,7 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], stress: &[Vec<f64>]) -
     if frames.len() < FRAMES {
         return None;
     }
-    let most: Vec<f64> = (0..taxels).map(|taxel| largest_of(stress.iter().map(|frame| frame[taxel]))).collect();
+    let most: Vec<f64> = (0..taxels).map(|taxel| magnitude(stress.iter().map(|frame| frame[taxel]))).collect();
     let lonely = |taxel: &usize| !design.input.dead.contains(taxel) && is_lonely(design, stress, &most, *taxel);
     let broken: Vec<usize> = (0..taxels).filter(lonely).collect();
     if broken.is_empty() || broken.len() > (taxels / ONE_OF).max(1) {
@@ -61,7 +62,7 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], stress: &[Vec<f64>]) -
 
 /// Whether a taxel's readings are large, and those around it do not go with them.
 fn is_lonely(design: &Design, stress: &[Vec<f64>], most: &[f64], taxel: usize) -> bool {
-    let others = largest_of(most.iter().enumerate().filter(|(other, _)| *other != taxel).map(|(_, most)| *most));
+    let others = magnitude(most.iter().enumerate().filter(|(other, _)| *other != taxel).map(|(_, most)| *most));
     let around = around(design, taxel);
     if others <= 0.0 || around.is_empty() || most[taxel] < LARGE * others {
         return false;
@@ -72,7 +73,7 @@ fn is_lonely(design: &Design, stress: &[Vec<f64>], most: &[f64], taxel: usize) -
     let large: Vec<&Vec<f64>> = stress.iter().filter(|frame| frame[taxel].abs() >= LARGE * others).collect();
     let alone = large
         .iter()
-        .filter(|frame| largest_of(around.iter().map(|&next| frame[next])) < handed * frame[taxel].abs())
+        .filter(|frame| magnitude(around.iter().map(|&next| frame[next])) < handed * frame[taxel].abs())
         .count();
     if alone as f64 >= enough {
         return true;

@@ -3,9 +3,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{LOADED, count, largest, middle};
+use super::{LOADED, count, largest};
 use crate::crosstalk::Crosstalk;
 use crate::design::Design;
+use crate::numbers::middle;
 use crate::sensor::Sensor;
 
 /// Fewer frames show none.
@@ -59,7 +60,7 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>]) -> Option<Found> {
         return None;
     }
     let share = mean(&found);
-    let each = |axis: usize| middle(found.iter().filter_map(|one| one.each.map(|each| each[axis])).collect());
+    let each = |axis: usize| middle(found.iter().filter_map(|one| one.each.map(|each| each[axis])));
     let both = found.iter().any(|one| one.each.is_some());
     let alike = !both || [each(0), each(1)].iter().all(|each| (share / ALIKE..=share * ALIKE).contains(each));
     if share < LEAST || !alike || (share - known).abs() < LEAST {
@@ -82,7 +83,7 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>]) -> Option<Found> {
 
 /// The mean share by the standard errors, of frames that agree with the middle one.
 fn mean(found: &[Estimate]) -> f64 {
-    let centre = middle(found.iter().map(|one| one.share).collect());
+    let centre = middle(found.iter().map(|one| one.share));
     // Without noise a frame's error is next to nothing.
     let error = |one: &Estimate| one.error.max(LEAST / 10.0);
     let (mut sum, mut weights) = (0.0, 0.0);

@@ -1,7 +1,8 @@
 //! Readings that pile up at one extreme value: the end of a converter.
 
-use super::{PULL, count, largest_of};
+use super::{PULL, count};
 use crate::design::Design;
+use crate::numbers::{magnitude, sorted};
 
 /// Of smooth readings few share the largest value, and many are just below it.
 const LEAST: usize = 5;
@@ -20,7 +21,7 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: usize, peak: f
     let of_sign = |sign: f64| {
         // By the values of the file, which a gain of each taxel has not touched yet.
         let own = frames.iter().flat_map(|frame| frame.iter().enumerate()).filter(|(_, value)| *value * sign > 0.0);
-        let farthest = largest_of(own.map(|(taxel, &value)| design.input.to_pa(taxel, value)));
+        let farthest = magnitude(own.map(|(taxel, &value)| design.input.to_pa(taxel, value)));
         let is_larger = farthest >= peak;
         let least = if is_larger { full_scale / WITHIN } else { PULL * peak };
         if farthest >= full_scale || farthest < least {
@@ -73,14 +74,13 @@ pub(crate) fn end_of_range<Frame: Iterator<Item = f64>>(
     }
     let several = places.iter().any(|&place| place != places[0]);
     let [least, most] = [f64::min, f64::max].map(|pick| loads.iter().copied().reduce(pick).unwrap_or(0.0));
-    let other = most - least > OTHER_LOAD * largest_of([least, most]);
+    let other = most - least > OTHER_LOAD * magnitude([least, most]);
     (end > rest && at >= LEAST && at > 2 * below && (several || other)).then_some((end, at))
 }
 
 /// The least distance of two readings in the upper half of the range: a count, where they are counts.
 fn step(readings: impl Iterator<Item = f64>, rest: f64, end: f64) -> f64 {
-    let mut upper: Vec<f64> = readings.filter(|&value| value - rest >= 0.5 * (end - rest)).collect();
-    upper.sort_by(f64::total_cmp);
+    let upper = sorted(readings.filter(|&value| value - rest >= 0.5 * (end - rest)));
     let distances = upper.windows(2).map(|pair| pair[1] - pair[0]).filter(|&distance| distance > 0.0);
     distances.reduce(f64::min).unwrap_or(0.0)
 }

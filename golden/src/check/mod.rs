@@ -25,6 +25,7 @@ pub(crate) use quiet::together;
 
 use crate::design::{Design, Tension};
 use crate::matrices::Matrices;
+use crate::numbers::magnitude;
 use crate::words::print_as_words;
 
 /// What a finding is about.
@@ -278,21 +279,12 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
 }
 
 fn largest(frame: &[f64]) -> f64 {
-    largest_of(frame.iter().copied())
+    magnitude(frame)
 }
 
 /// The value that is farthest from 0.
 fn farthest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |far: f64, &value| if value.abs() > far.abs() { value } else { far })
-}
-
-fn largest_of(values: impl IntoIterator<Item = f64>) -> f64 {
-    values.into_iter().fold(0.0_f64, |peak, value| peak.max(value.abs()))
-}
-
-fn middle(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 fn holds(frames: usize, of: usize) -> bool {

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::parse_traction::RawTraction;
+use super::parse_traction::traction;
 use super::{Contact, Converter, Medium, Scene, SensorErrors, Shape};
 use crate::design::checks::Check;
 use crate::design::{DEFAULT_FULL_SCALE_PA, DesignError, Sensor, Tension, syntax_position};
@@ -59,7 +59,7 @@ enum ShapeKind {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawContact {
+pub(super) struct RawContact {
     shape: String,
     semi_axes_mm: Option<Vec<f64>>,
     sides_mm: Option<Vec<f64>>,
@@ -68,12 +68,12 @@ struct RawContact {
     normal_force_n: f64,
     friction: f64,
     direction_deg: Option<f64>,
-    turn_deg: Option<f64>,
-    edge: Option<f64>,
-    tilt: Option<Vec<f64>>,
-    shear: Option<String>,
-    held: Option<f64>,
-    spin: Option<f64>,
+    pub(super) turn_deg: Option<f64>,
+    pub(super) edge: Option<f64>,
+    pub(super) tilt: Option<Vec<f64>>,
+    pub(super) shear: Option<String>,
+    pub(super) held: Option<f64>,
+    pub(super) spin: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -178,9 +178,7 @@ fn contact(
             ));
         }
     };
-    let RawContact { turn_deg, edge, held, spin, .. } = *raw;
-    let (tilt, shear) = (raw.tilt.as_deref(), raw.shear.as_deref());
-    let traction = RawTraction { turn_deg, edge, tilt, shear, held, spin }.check(check, shape, key)?;
+    let traction = traction(check, raw, shape, key)?;
     let [x, y] = check.pair(&key("centre_mm"), &raw.centre_mm)?;
     let centre = |name: &str, mm: f64| check.real(&key(name), mm, -100_000.0, 100_000.0, "mm").map(|mm| mm * 1e-3);
     Ok(Contact {

@@ -6,6 +6,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::design::Tension;
+use crate::numbers::magnitude;
 
 /// What a sensor does to the stress, in the order of the fields. The default is a sensor without errors, whose taxels are
 /// points.
@@ -70,7 +71,7 @@ impl SensorErrors {
         }
         if self.noise > 0.0 {
             let mut noise = generator(1 + frame as u64);
-            let deviation = self.noise * stress.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
+            let deviation = self.noise * magnitude(&*stress);
             for value in &mut *stress {
                 *value += deviation * normal(&mut noise);
             }

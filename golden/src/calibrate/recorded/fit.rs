@@ -81,7 +81,7 @@ impl<'a> Work<'a> {
         let trust =
             holds.all.iter().map(|hold| 1.0 / (of_contact(hold.contact).sqrt() * hold.load.max(LIGHT * largest)));
         let trust = trust.collect();
-        let readings = Readings::new(design, holds);
+        let readings = Readings::new(holds);
         let x: Vec<&[f64]> = holds.all.iter().map(|hold| hold.x.as_slice()).collect();
         let knots = shape::knots(&x, holds.noise.unwrap_or(0.0));
         let own = readings.own(&design.input);

@@ -1,6 +1,7 @@
 //! Cross-validation that leaves whole places out, or, at few places, whole loads.
 
 use super::holds::Hold;
+use crate::numbers::sorted;
 
 /// Most parts.
 const MOST: usize = 8;
@@ -57,10 +58,8 @@ impl Folds {
 
 /// Ranges of loads that are one, from the smallest on.
 pub(super) fn levels(loads: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
-    let mut loads: Vec<f64> = loads.collect();
-    loads.sort_by(f64::total_cmp);
     let mut levels: Vec<[f64; 2]> = Vec::new();
-    for load in loads {
+    for load in sorted(loads) {
         match levels.last_mut() {
             Some([low, high]) if load <= SAME_LOAD * *low => *high = load,
             _ => levels.push([load, load]),

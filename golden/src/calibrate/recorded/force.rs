@@ -10,6 +10,7 @@ use super::table::Measured;
 use super::{RecordedError, friction, report, sideways};
 use super::{holds, loads};
 use crate::design::Design;
+use crate::numbers::{magnitude, middle};
 use crate::solver::{Solver, Status};
 
 /// Fewer places tell no gains of taxels.
@@ -69,11 +70,11 @@ pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> 
     let left_out = folds.as_ref().map(|folds| work.validate(kind, prior, folds));
     let plain = folds.as_ref().map(|folds| work.validate(kinds[0], None, folds));
     let stresses: Vec<Vec<f64>> = work.holds.all.iter().map(|hold| work.stress(&found, &hold.x)).collect();
-    let largest = stresses.iter().map(|stress| peak(stress)).fold(0.0, f64::max);
+    let largest = stresses.iter().map(magnitude).fold(0.0, f64::max);
     let gains: Vec<f64> = found.delta.iter().zip(&work.before).map(|(delta, before)| before * (1.0 + delta)).collect();
     let heavy = |load: f64| load >= HEAVY * steps.last().map_or(0.0, |last| last[1]);
     let pressed = stresses.iter().zip(&work.loads).filter(|(_, load)| heavy(**load));
-    let range = [pressed.map(|(stress, _)| peak(stress)).fold(f64::INFINITY, f64::min), largest];
+    let range = [pressed.map(|(stress, _)| magnitude(stress)).fold(f64::INFINITY, f64::min), largest];
     let mut calibrated = work.readings.calibrated(design, &found.shape, &gains, range, &mut remarks);
     remarks.extend(work.readings.far_from(design, &calibrated));
     let halves = prior.zip(folds.as_ref()).map(|(prior, folds)| work.halves(&found, prior, folds));
@@ -161,10 +162,7 @@ fn verify(
              as those"
         )));
     }
-    let [error, fit] = [errors, fits].map(|mut errors| {
-        errors.sort_by(f64::total_cmp);
-        errors.get(errors.len() / 2).copied().unwrap_or(0.0)
-    });
+    let [error, fit] = [errors, fits].map(middle);
     if error > 2.0 * fit + APART {
         return Err(wrong(format!(
             "solved with the constants found, the recording's loads err by {:.1} % in the median, and they were fitted to \
@@ -176,10 +174,6 @@ fn verify(
     Ok((nothing > 0).then(|| {
         format!("{nothing} of {loaded} loaded frames are \"no contact\" by algorithm.noise_floor_pa: light loads lie within the noise")
     }))
-}
-
-fn peak(stress: &[f64]) -> f64 {
-    stress.iter().fold(0.0, |peak, stress| peak.max(stress.abs()))
 }
 
 impl Kind {

@@ -6,7 +6,7 @@ use crate::calibrate::observer::{Observer, Sample};
 use crate::calibrate::samples::{stream, target};
 use crate::calibrate::{CalibrateError, contacts, fit_friction_correction};
 use crate::design::{Design, Estimator};
-use crate::estimators::joint::{CUBIC_LIMIT, Joint, JointConstants, NetworkScratch};
+use crate::estimators::joint::{CUBIC_LIMIT, Joint, JointConstants, NetworkScratch, scaled};
 
 use super::RecordedError;
 
@@ -118,11 +118,6 @@ pub(super) fn fit(
         100.0 * as_it_was,
         samples.len()
     )))
-}
-
-fn scaled(mu: [f64; 2], [c1, c3]: [f64; 2]) -> [f64; 2] {
-    let factor = c1 + c3 * (mu[0] * mu[0] + mu[1] * mu[1]);
-    mu.map(|component| factor * component)
 }
 
 /// A hold as the estimator sees it.

@@ -3,6 +3,7 @@
 use super::lag;
 use super::table::Measured;
 use crate::design::Design;
+use crate::numbers::{magnitude, middle, sorted};
 
 /// Loads below this share of the largest are rest.
 pub(super) const REST: f64 = 0.01;
@@ -71,7 +72,7 @@ fn together(lag: isize) -> String {
 /// What presses in each frame, whatever the sign of the file.
 pub(super) fn loads(measured: &Measured, remarks: &mut Vec<String>) -> Result<Vec<Option<f64>>, Wrong> {
     let known: Vec<f64> = measured.forces.iter().filter_map(|force| force[2]).collect();
-    let largest = known.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+    let largest = magnitude(&known);
     if largest <= 0.0 {
         return Err((
             "no normal force other than 0 is known".to_owned(),
@@ -109,11 +110,8 @@ pub(super) fn rest(
         let least =
             |taxel: usize| frames.iter().map(|frame| (frame[taxel] - rest[taxel]).abs()).fold(f64::INFINITY, f64::min);
         let counts = frames.iter().flat_map(|frame| alive.iter().map(|&taxel| frame[taxel]));
-        let peak = counts.fold(0.0_f64, |peak, count| peak.max(count.abs()));
-        let mut far: Vec<f64> = alive.iter().map(|&taxel| least(taxel)).collect();
-        far.sort_by(f64::total_cmp);
-        let middle = far[far.len() / 2];
-        if middle > 0.02 * peak {
+        let middle = middle(alive.iter().map(|&taxel| least(taxel)));
+        if middle > 0.02 * magnitude(counts) {
             remarks.push(format!(
                 "no frame has a force of 0, and half of the taxels never read less than {middle:.0} counts: is the tare \
                  missing? Record some frames without load and give them the force 0"
@@ -123,14 +121,9 @@ pub(super) fn rest(
         }
         return (of_all(&rest, &alive), None);
     }
-    let column = |taxel: usize| {
-        let mut counts: Vec<f64> = at_rest.iter().map(|&k| frames[k][taxel]).collect();
-        counts.sort_by(f64::total_cmp);
-        counts
-    };
     let middles: Vec<f64> = (0..taxels)
         .map(|taxel| {
-            let counts = column(taxel);
+            let counts = sorted(at_rest.iter().map(|&k| frames[k][taxel]));
             // Of whole counts a median loses what the mean of the middle half keeps.
             let middle = &counts[counts.len() / 4..counts.len() - counts.len() / 4];
             middle.iter().sum::<f64>() / middle.len() as f64
@@ -147,10 +140,7 @@ pub(super) fn rest(
 
 /// The readings of those that are alive, and the middle one in the place of others.
 fn of_all(rest: &[f64], alive: &[usize]) -> Vec<f64> {
-    let mut sorted: Vec<f64> = alive.iter().map(|&taxel| rest[taxel]).collect();
-    sorted.sort_by(f64::total_cmp);
-    let middle = sorted[sorted.len() / 2];
-    let mut all = vec![middle; rest.len()];
+    let mut all = vec![middle(alive.iter().map(|&taxel| rest[taxel])); rest.len()];
     for &taxel in alive {
         all[taxel] = rest[taxel];
     }

@@ -3,6 +3,7 @@
 use super::holds::Holds;
 use super::shape::{self, Own, Shape};
 use crate::design::{Calibration, Curve, Design, Hardware, Input, NOISE_FLOOR_DIVISOR};
+use crate::numbers::middle;
 
 /// The full scale is this many times the largest stress seen, and is kept up to so many times that.
 const HEADROOM: [f64; 2] = [1.25, 32.0];
@@ -29,11 +30,9 @@ pub(super) struct Readings {
 }
 
 impl Readings {
-    pub(super) fn new(design: &Design, holds: &Holds) -> Self {
+    pub(super) fn new(holds: &Holds) -> Self {
         let rest: Vec<f64> = holds.rest.iter().map(|rest| holds.sign * rest).collect();
-        let mut sorted = rest.clone();
-        sorted.sort_by(f64::total_cmp);
-        let base = sorted[design.sensor.taxels() / 2];
+        let base = middle(&rest);
         let x = || holds.all.iter().flat_map(|hold| hold.x.iter().copied());
         let range = [x().fold(0.0, f64::min), x().fold(0.0, f64::max)];
         Self { sign: holds.sign, rest, base, noise: holds.noise, range }

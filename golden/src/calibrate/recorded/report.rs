@@ -10,6 +10,7 @@ use super::friction::Verdict;
 use super::gains::Prior;
 use super::shape::{Kind, Shape};
 use crate::design::{Curve, Design};
+use crate::numbers::{middle, sorted};
 
 /// Constants from a recording, and how good they are.
 #[derive(Clone, Debug, Serialize)]
@@ -83,8 +84,7 @@ pub struct Errors {
 impl Errors {
     /// Of shares.
     pub fn of(errors: impl Iterator<Item = f64>) -> Self {
-        let mut sorted: Vec<f64> = errors.map(|error| 100.0 * error.abs()).collect();
-        sorted.sort_by(f64::total_cmp);
+        let sorted = sorted(errors.map(|error| 100.0 * error.abs()));
         let at = |share: f64| {
             sorted.get((share * (sorted.len().max(1) - 1) as f64).round() as usize).copied().unwrap_or(0.0)
         };
@@ -267,9 +267,9 @@ fn gains(recorded: &mut Recorded, facts: &Facts<'_>) {
 /// How well the sensor repeats, and how it creeps.
 fn spread(recorded: &mut Recorded, facts: &Facts<'_>) {
     let holds = &facts.work.holds.all;
-    let mut creeps: Vec<f64> = holds.iter().filter_map(|hold| hold.creep).collect();
-    creeps.sort_by(f64::total_cmp);
-    if let Some(&creep) = creeps.get(creeps.len() / 2).filter(|creep| creep.abs() > 0.03) {
+    let creeps: Vec<f64> = holds.iter().filter_map(|hold| hold.creep).collect();
+    let creep = middle(&creeps);
+    if creep.abs() > 0.03 {
         recorded.remarks.push(format!(
             "under a constant load the readings {} by {:.0} % (median of {} holds): the sensor creeps. The constants are right for the mean of a hold",
             if creep > 0.0 { "rise" } else { "fall" }, 100.0 * creep.abs(), creeps.len()

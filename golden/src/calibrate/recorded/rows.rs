@@ -12,6 +12,7 @@ use crate::crosstalk::Crosstalk;
 use crate::dead_taxels::DeadTaxels;
 use crate::design::{Design, Outputs, PlanKind};
 use crate::names::MatrixName;
+use crate::numbers::magnitude;
 use crate::parity::FoldedMatrix;
 use crate::solver::{Solution, Solver, SolverError, Status, Workspace};
 
@@ -60,7 +61,7 @@ impl Rows {
 
     /// The forces `[F_x, F_y, F_z]` of stress that presses, in pascals; nothing of a frame without contact.
     pub(super) fn solve(&mut self, pressing: &[f64]) -> Option<[f64; 3]> {
-        let peak = pressing.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()));
+        let peak = magnitude(pressing);
         if peak <= 0.0 || !peak.is_finite() {
             return None;
         }

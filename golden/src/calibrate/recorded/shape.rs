@@ -5,6 +5,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::numbers::sorted;
+
 /// Pieces of a curve.
 const PIECES: usize = 8;
 /// Range of a power law's exponent, as the design file has it.
@@ -102,8 +104,7 @@ fn basis(knots: &[f64], x: f64) -> Vec<f64> {
 
 /// Knots such that every piece has the same share of what is read.
 pub(super) fn knots(x: &[&[f64]], noise: f64) -> Vec<f64> {
-    let mut read: Vec<f64> = x.iter().flat_map(|x| x.iter().copied()).filter(|&x| x > 3.0 * noise && x > 0.0).collect();
-    read.sort_by(f64::total_cmp);
+    let read = sorted(x.iter().flat_map(|x| x.iter().copied()).filter(|&x| x > 3.0 * noise && x > 0.0));
     let largest = read.last().copied().unwrap_or(1.0);
     let total: f64 = read.iter().sum();
     let mut knots = vec![0.0];

@@ -14,6 +14,7 @@ use super::shape::{self, Kind, Shape, Terms};
 use super::table::Measured;
 use crate::dead_taxels::MOST_DEAD;
 use crate::design::Design;
+use crate::numbers::middle;
 
 /// A taxel that reads less than this share of what the others do is dead.
 const DEAD: f64 = 0.1;
@@ -140,7 +141,7 @@ struct Uniform<'a> {
 
 impl<'a> Uniform<'a> {
     fn new(design: &Design, holds: &'a Holds) -> Self {
-        let readings = Readings::new(design, holds);
+        let readings = Readings::new(holds);
         let own = readings.own(&design.input);
         let x: Vec<&[f64]> = holds.all.iter().map(|hold| hold.x.as_slice()).collect();
         let knots = shape::knots(&x, holds.noise.unwrap_or(0.0));
@@ -155,9 +156,7 @@ impl<'a> Uniform<'a> {
     /// Taxels that read next to nothing where the others do, and those that the design says are dead.
     fn dead(&self, design: &Design) -> Vec<usize> {
         let reads = |taxel: usize| self.holds.all.iter().map(|hold| hold.x[taxel]).fold(f64::NEG_INFINITY, f64::max);
-        let mut all: Vec<f64> = (0..self.alive.len()).map(reads).collect();
-        all.sort_by(f64::total_cmp);
-        let middle = all[all.len() / 2];
+        let middle = middle((0..self.alive.len()).map(reads));
         (0..self.alive.len())
             .filter(|&taxel| reads(taxel) < DEAD * middle || design.input.dead.contains(&taxel))
             .collect()

@@ -13,6 +13,7 @@ mod thin;
 mod weights;
 
 use super::seen::{Answer, RANGE, Seen};
+use crate::numbers::magnitude;
 use crate::status::Status;
 pub use constants::{
     CUBIC_LIMIT, Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, TrainingSet, WEIGHT_FRACTION, WEIGHT_LIMIT,
@@ -44,7 +45,7 @@ pub(crate) struct JointScratch {
 
 /// The estimate before it is calibrated.
 pub(crate) fn raw(seen: &Seen, scratch: &mut JointScratch) -> Found {
-    let largest = seen.b.iter().fold(0.0_f64, |largest, stress| largest.max(stress.abs()));
+    let largest = magnitude(seen.b);
     search(Grid::SEARCH, seen.u, DEAD_ZONE * largest, LEVEL * seen.contact.stress_sum, &mut scratch.grid)
 }
 

@@ -1,0 +1,21 @@
+//! Largest magnitudes and middles of values.
+
+use std::borrow::Borrow;
+
+/// The largest magnitude; 0 of no values.
+pub(crate) fn magnitude(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
+    values.into_iter().fold(0.0, |peak: f64, value| peak.max(value.borrow().abs()))
+}
+
+/// The values from the least to the largest.
+pub(crate) fn sorted(values: impl IntoIterator<Item: Borrow<f64>>) -> Vec<f64> {
+    let mut values: Vec<f64> = values.into_iter().map(|value| *value.borrow()).collect();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+/// The middle value, of an even number the upper one; 0 of no values.
+pub(crate) fn middle(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
+    let sorted = sorted(values);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+}
