@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use golden::design::PlanKind;
 use golden::table::Table;
 use serde::Serialize;
 
 use crate::figures::grouped;
-use crate::sweep::point::{Calibration, Hardware, Point};
+use crate::sweep::point::{Hardware, Point};
 
 /// Errors that differ by no more, in percent of the normal force, are taken for equal.
 const AS_GOOD: f64 = 0.5;
@@ -24,8 +23,6 @@ pub struct Conclusion {
     judged: String,
     /// The choices.
     table: Table,
-    /// The recommended variant as keys of a design file.
-    keys: String,
 }
 
 /// A variant with its largest errors on the scenes that tell, in percent of the normal force.
@@ -111,7 +108,7 @@ pub fn conclusion(points: &[&Point], scenes: &[&str]) -> Option<Conclusion> {
         scenes.join(", "),
         variants.len()
     );
-    Some(Conclusion { judged, table, keys: keys(best.point) })
+    Some(Conclusion { judged, table })
 }
 
 /// The point of the variant that is recommended, as [`conclusion`] names it.
@@ -149,36 +146,12 @@ fn variants<'a>(points: &[&'a Point], scenes: &[&str]) -> Vec<Variant<'a>> {
         .collect()
 }
 
-fn keys(point: &Point) -> String {
-    let filter = match point.filter.split_once('=') {
-        Some((kind, value)) => {
-            let (kind, key) = kind.split_once(' ').unwrap_or((kind, "l"));
-            format!("{{ kind = \"{kind}\", {key} = {value} }}")
-        }
-        // The choices of F3 are the design's.
-        None if point.filter == "f3" => {
-            "{ kind = \"f3\", scenes = [\"SCENE.toml\"] }   # your own, then sptfra tune-filter".to_owned()
-        }
-        None => format!("{{ kind = \"{}\" }}", point.filter),
-    };
-    let calibrated = point.calibration.map_or_else(String::new, |Calibration { units, training_set }| {
-        let remark = if units > 0 { format!("   # sptfra calibrate --hidden {units}") } else { String::new() };
-        format!("\ntraining_set = \"{training_set}\"{remark}")
-    });
-    let plan = if point.plan == PlanKind::Paper { "paper" } else { "reduced" };
-    format!(
-        "[algorithm]\nplan = \"{plan}\"\nfilter = {filter}\nestimator = \"{}\"{calibrated}\n\n[hardware]\nlanes = {}\n\
-         coefficient_bits = {}\ndata_bits = {}\n",
-        point.estimator, point.lanes, point.coefficient_bits, point.data_bits
-    )
-}
-
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
     use crate::accuracy::StatusCounts;
     use crate::sweep::point::{Geometry, Verified};
-    use golden::design::{Design, Estimator, Kernel};
+    use golden::design::{Estimator, Kernel, PlanKind};
     use golden::metrics::{ErrorSummary, Outcome};
 
     /// A point on a scene: multipliers, cycles, and its error along x in percent.
@@ -259,7 +232,6 @@ pub(super) mod tests {
             "{}",
             found.judged
         );
-        assert!(found.keys.contains("filter = { kind = \"none\" }") && found.keys.contains("lanes = 16"), "{found:?}");
         assert_eq!(conclusion(&points, &["a", "b", "c"]), None);
         assert_eq!(conclusion(&points, &[]), None);
     }
@@ -291,19 +263,5 @@ pub(super) mod tests {
             "{exact:?}"
         );
         assert!(fastest[0].starts_with("fastest: ") && fastest[0].contains("32 lanes"), "{fastest:?}");
-    }
-
-    #[test]
-    fn filters_are_written_as_a_design_file_has_them() {
-        let of = |filter: &str| keys(&Point { filter: filter.to_owned(), ..point("a", 4, 1, 1.0) });
-        for filter in ["none", "f1 l=10", "f2 p=50", "f3"] {
-            let sensor = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
-                 name = \"pad\"\n[sensor]\ncolumns = 4\nrows = 4\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
-            // The reduced plan does not know F3.
-            let text = format!("{sensor}{}", of(filter)).replace("plan = \"reduced\"", "plan = \"paper\"");
-            assert!(Design::from_toml(&text, "pad.toml").is_ok(), "{text}");
-        }
-        assert!(of("f1 l=40").contains("filter = { kind = \"f1\", l = 40 }"));
-        assert!(of("f2 p=50").contains("filter = { kind = \"f2\", p = 50 }"));
     }
 }
