@@ -49,6 +49,7 @@ test: lint-and-tools ## Formatting, lints, all tests of all crates
 .PHONY: test-long
 test-long: lint-and-tools ## As test, with every design and broken copy (three quarters of an hour)
 	SPTFRA_TEST_ALL=1 $(CARGO) test --workspace
+	$(CARGO) test -p sptfra-golden --test suite -- --ignored six_geometries 4096_taxels
 	$(CARGO) test -p sptfra-hdl-gen -p sptfra-testbench -p xtask --test suite -- --ignored
 
 .PHONY: test-times

@@ -52,7 +52,7 @@ fn a_mat_of_1728_taxels() {
 }
 
 #[test]
-#[ignore = "takes a minute"]
+#[ignore = "a minute: part of `make test-long`"]
 fn a_mat_of_4096_taxels() {
     check(64, 64);
 }

@@ -72,7 +72,7 @@ fn the_expected_error_holds_within_a_fifth() {
 }
 
 #[test]
-#[ignore = "six geometries; minutes"]
+#[ignore = "minutes: part of `make test-long`"]
 fn the_expected_error_holds_for_six_geometries() {
     for (sensor, tension) in [
         ("columns = 10\nrows = 10\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0", "read"),
