@@ -18,7 +18,7 @@ use testbench::trial::timeout;
 use super::commits::commits_at_every_moment;
 use super::{Subject, core, errors, judged, judged_in, load, perform, read_back, version};
 pub use crate::support::calibrated::design_with_curve;
-use crate::support::effort::some_of;
+use crate::support::effort::{half_of, some_of};
 use crate::support::faults::broken;
 use crate::support::{built, frames, in_parallel, planned, simulate_exactly};
 
@@ -85,7 +85,9 @@ fn a_run_finds_all_registers_right() {
 /// Integers of either kind, several in a beat, dead taxels in the banks and in ROM, a field, a scanner that is not held.
 #[test]
 fn other_designs_from_end_to_end() {
-    for (samples, bits, room) in [(Samples::Uint16, 64, 2), (Samples::Int16, 32, 0), (Samples::Float32, 128, 1)] {
+    for (samples, bits, room) in
+        half_of([(Samples::Uint16, 64, 2), (Samples::Int16, 32, 0), (Samples::Float32, 128, 1)])
+    {
         let mut design = design_with_curve();
         design.name = format!("{}_{samples}_{bits}", design.name);
         design.algorithm.outputs = Outputs::Field;
