@@ -197,6 +197,17 @@ fn drawn(sources: &RtlSources, seed: u64) -> Vec<Mutation> {
     turns.into_iter().map(|(_, mutation)| mutation).collect()
 }
 
+/// Contacts as a sensor without tension reads them, from no friction to that of the frames: a frame is mixed with the one that
+/// slides the other way.
+fn without_tension(stress: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let half = stress.len() / 2;
+    let mixed = |(index, share): (usize, f64)| -> Vec<f64> {
+        let pair = stress[index].iter().zip(&stress[index + half]);
+        pair.map(|(one, other)| (share * one + (1.0 - share) * other).min(0.0)).collect()
+    };
+    (0..half).zip([0.5, 0.6, 0.7, 0.8, 0.9, 1.0]).map(mixed).collect()
+}
+
 /// What every mutant goes through: the trial that every design goes through, then stress.
 struct Ordeal<'a> {
     trial: Trial<'a>,
@@ -210,7 +221,9 @@ struct Ordeal<'a> {
 
 impl<'a> Ordeal<'a> {
     fn new(plan: &'a Plan, sources: &'a RtlSources, options: &'a Options) -> Result<Self, MutantsError> {
-        let frames = FrameSet::standing(&plan.design.sensor)?.as_delivered(&plan.design);
+        let mut frames = FrameSet::standing(&plan.design.sensor)?;
+        frames.stress.extend(without_tension(&frames.stress));
+        let frames = frames.as_delivered(&plan.design);
         let cache = tempfile::tempdir().map_err(MutantsError::Folder)?;
         let translation = translation(sources).map_err(TrialError::from)?;
         let trial = Trial::new(plan, packets(plan.streams(), &frames.stress), options.seed as u32);
