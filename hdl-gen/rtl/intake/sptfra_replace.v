@@ -244,6 +244,7 @@ module sptfra_replace #(
         not_finite_4 <= !replaces[3] && read_3[28];
         if (reset) begin
             valid <= 3'd0;
+            lasts <= 4'd0;
         end
     end
 
