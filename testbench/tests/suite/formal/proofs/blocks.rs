@@ -107,7 +107,7 @@ pub const PROOFS: &[Proof] = &[
             ("frame_gate", "index != LAST}", "index < LAST}"),
             ("frame_writer", "(banks_taken != 2'd2)", "(banks_taken != 2'd3)"),
             ("frame_writer", "if (reset || frame_done)", "if (reset)"),
-            ("frame_writer", "assign busy = ended || crosstalk_busy || smoothing_busy;", "assign busy = 1'b0;"),
+            ("frame_writer", "assign busy = ended || corrections_busy || smoothing_busy;", "assign busy = 1'b0;"),
             ("frame_gate", "wire store = (index != BEYOND);", "wire store = 1'b1;"),
             ("frame_gate", "in_frame <= !s_tlast;", "in_frame <= 1'b1;"),
             ("frame_gate", "s_tready = in_frame || may_open", "s_tready = may_open"),
