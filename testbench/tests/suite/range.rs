@@ -7,8 +7,8 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::calibration;
-use crate::support::effort::{half_of, some_of};
-use crate::support::faults::broken;
+use crate::support::effort::half_of;
+use crate::support::faults::{broken, some_faults};
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint, with_lanes};
 
 /// Strengths of the frames in a row: full scale down to steps, 2^-k each.
@@ -75,7 +75,7 @@ fn packets(plan: &Plan) -> Vec<Vec<u32>> {
     let counts = plan.design.input.counts();
     let value =
         |(taxel, &pascal): (usize, &f64)| if counts { plan.design.input.from_pa(taxel, pascal) } else { pascal };
-    let packet = |frame: &Vec<f64>| plan.streams().packet(&frame.iter().enumerate().map(value).collect::<Vec<_>>());
+    let packet = |frame: &Vec<f64>| frames::filled(plan, frame.iter().enumerate().map(value));
     pascals.iter().map(packet).collect()
 }
 
@@ -93,25 +93,26 @@ fn frames_of_all_strengths_in_one_row_are_right() {
 /// The frames above find what could be wrong of a range: which one, whose, and where it is taken back.
 #[test]
 fn a_wrong_range_is_noticed() {
-    let faults = some_of([
+    let faults = [
         ("sptfra_frame_scale", "(guessed > STRESS_BOUND)", "(guessed > STRESS_BOUND + 5000000)"),
         ("sptfra_frame_scale", "!counted[sample] ? 27'd0 : ", ""),
         ("sptfra_fold", "exact_4 <= octets_3 << exponent[2:0]", "exact_4 <= octets_3 << exponent[1:0]"),
-        ("sptfra_fold", "even_above + even_below + HALF", "even_above + even_below"),
-        ("sptfra_frame_context", "(next_direction),", "(oldest),"),
+        ("sptfra_fold", ".HALF  (DROPPED)", ".HALF  (0)"),
+        ("sptfra_frame_context", ".take       (direction_take),", ".take       (take),"),
         (
             "sptfra_frame_context",
-            "(oldest),\n                .read_data   (exponent)",
-            "(next_direction),\n                .read_data   (exponent)",
+            ".take       (take),\n                .oldest     (exponent)",
+            ".take       (direction_take),\n                .oldest     (exponent)",
         ),
         ("sptfra_output_word", "error_exponent + FORCE_EXPONENT - scale_exponent", "error_exponent + FORCE_EXPONENT"),
-    ]);
+    ];
+    let faults = some_faults(faults, |&(module, from, _)| (module, from));
     let plan = planned(&designs().swap_remove(2));
     let packets = packets(&plan);
     let noticed = in_parallel(&faults, |&(module, from, to)| {
         simulate_exactly(&plan, &broken(&plan, module, from, to), &packets, 5).is_err()
     });
     let missed: Vec<&str> =
-        faults.iter().zip(noticed).filter(|(_, noticed)| !noticed).map(|(fault, _)| fault.2).collect();
+        faults.iter().zip(noticed).filter(|(_, noticed)| !noticed).map(|(fault, _)| fault.1).collect();
     assert!(missed.is_empty(), "{missed:?}");
 }

@@ -18,8 +18,7 @@ use super::{
     CONTRADICTION, COUNTERS, OUT_OF_RANGE, Subject, WRONG_CRC, counts, design, errors, judged, load, perform,
     read_back, version, wait,
 };
-use crate::support::effort::some_of;
-use crate::support::faults::broken;
+use crate::support::faults::{broken, some_faults};
 use crate::support::{built, planned, shipped, simulate_exactly};
 
 /// The small design, with room for two dead taxels, one of which is so at power-up.
@@ -132,10 +131,11 @@ fn a_map_of_another_bank_is_noticed() {
     let of = subject.calibration();
     let bank = with_dead(&subject.plan, &of.power_up, &[6, 7]);
     let interval = subject.plan.timeline.interval_cycles;
-    for (module, from, to) in some_of([
+    let faults = [
         ("sptfra_bz", ".bank           (bank_held)", ".bank           (active)"),
         ("sptfra_bz", "calibration_acting[66:59], replaced}", "calibration_acting[66:59], 4'd1}"),
-    ]) {
+    ];
+    for (module, from, to) in some_faults(faults, |&(module, from, ..)| (module, from)) {
         let built = broken(&subject.plan, module, from, to);
         let wrong = commits_at_every_moment(subject, &built, &bank, (0..interval).step_by(5));
         assert_ne!(wrong, Vec::<String>::new(), "{to}");

@@ -12,7 +12,7 @@ use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::support::effort::some_of;
+use crate::support::faults::some_faults;
 use crate::support::in_parallel;
 use crate::support::player::{verilator, write_broken};
 
@@ -142,17 +142,18 @@ fn components_are_counted_as_the_model_counts_them() {
 /// Copies of the module that are wrong somewhere count wrong.
 #[test]
 fn faults_are_noticed() {
-    let faults = some_of([
+    let faults = [
         // One taxel of a component that is joined gets its new label.
-        ("components", "meets && (old == above)", "meets && (old == above) && (index == COLUMNS)"),
-        ("components", "(above != own)", "1'b1"),
-        ("components", "joins ? sums[joined] : NOTHING", "NOTHING"),
-        ("components", "(joined_2 >= least)", "1'b0"),
-        ("components", "was_contact && !begins_3", "was_contact"),
-        ("weight_raster", "!borders[3] && (weight_3 > limit)", "(weight_3 > limit)"),
-        ("weight_totals", "counts_1[index] ?", "1'b1 ?"),
-        ("contact_counter", "left + {3'd0, done}", "left"),
-    ]);
+        ("sptfra_components", "meets && (old == above)", "meets && (old == above) && (index == COLUMNS)"),
+        ("sptfra_components", "(above != own)", "1'b1"),
+        ("sptfra_components", "joins ? sums[joined] : NOTHING", "NOTHING"),
+        ("sptfra_components", "(joined_2 >= least)", "1'b0"),
+        ("sptfra_components", "was_contact && !begins_3", "was_contact"),
+        ("sptfra_weight_raster", "!borders[3] && (weight_3 > limit)", "(weight_3 > limit)"),
+        ("sptfra_weight_totals", "counts_1[index] ?", "1'b1 ?"),
+        ("sptfra_contact_counter", "left + {3'd0, done}", "left"),
+    ];
+    let faults = some_faults(faults, |&(module, from, _)| (module, from));
     let copies: Vec<_> = std::iter::once(None).chain(faults.iter().map(Some)).collect();
     let found = in_parallel(&copies, |fault| {
         let mut random = ChaCha8Rng::seed_from_u64(9);
@@ -211,7 +212,7 @@ fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>, random: &mut ChaCha8
     }
     fs::write(place("bench.v".to_owned()), bench + "endmodule\n").expect("writable");
     if let Some((module, from, to)) = fault {
-        write_broken(folder.path(), &format!("sptfra_{module}"), from, to);
+        write_broken(folder.path(), module, from, to);
     }
     let said = verilator(folder.path(), longest + 1);
     if !said.is_empty() {

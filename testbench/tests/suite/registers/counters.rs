@@ -9,8 +9,7 @@ use testbench::stream::{Pacing, Traffic, exchange};
 use testbench::trial::{Trial, timeout};
 
 use super::{mixed, subjects};
-use crate::support::effort::some_of;
-use crate::support::faults::broken;
+use crate::support::faults::{broken, some_faults};
 use crate::support::{frames, in_parallel, simulate_exactly};
 
 #[test]
@@ -98,13 +97,14 @@ fn a_wrong_count_is_noticed() {
     let plan = &subject.plan;
     let packets = mixed(plan, 40, &mut ChaCha8Rng::seed_from_u64(8));
     let trial = Trial::new(plan, packets, 1);
-    for (from, to) in some_of([
+    let faults = [
         ("(status[5:4] != 2'd0)", "(status[4] != 1'd0)"),
         ("now - beginnings[oldest] + 32'd1", "now - beginnings[oldest]"),
         ("seen_end ? now - last_end : 32'd0", "now - last_end + 32'd1"),
         ("frames_in <= frames_in + 32'd1", "frames_in <= frames_in + 32'd2"),
         ("frame_done <= frame_ends;", "frame_done <= 1'b0;"),
-    ]) {
+    ];
+    for (from, to) in some_faults(faults, |&(from, _)| ("sptfra_frame_meter", from)) {
         let built = broken(plan, "sptfra_frame_meter", from, to);
         let report = check(&trial, &built, || ()).expect("no rule broken");
         assert_ne!(report.wrong, Vec::<String>::new(), "{to}");

@@ -14,7 +14,7 @@ use testbench::verilate::Built;
 
 use super::{Subject, mixed, subjects};
 use crate::support::effort::{self, some_of};
-use crate::support::faults::broken;
+use crate::support::faults::{broken, some_faults};
 use crate::support::{frames, in_parallel};
 
 /// Frames that may be lost: those inside the core, see the test of resets, and the one that is being sent.
@@ -177,12 +177,13 @@ fn soft_resets_on_each_others_heels_cut_no_packet() {
 #[test]
 fn a_gate_that_cuts_packets_is_noticed() {
     let subject = &subjects()[0];
-    for (from, to) in some_of([
+    let faults = [
         ("wire out_open = !waiting || out_packet;", "wire out_open = !waiting;"),
         ("waiting && !out_packet && !resets", "waiting && !resets"),
         ("discards <= in_packet_next;", "discards <= 1'b0;"),
         ("core_s_tvalid = s_tvalid && in_open", "core_s_tvalid = s_tvalid"),
-    ]) {
+    ];
+    for (from, to) in some_faults(faults, |&(from, _)| ("sptfra_stream_gate", from)) {
         let built = broken(&subject.plan, "sptfra_stream_gate", from, to);
         let packets = packets(subject, 16);
         let noticed = (0..1500).step_by(37).any(|cycle| {

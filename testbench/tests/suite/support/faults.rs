@@ -1,8 +1,31 @@
 //! Copies of the hardware with a fault, which tests must notice.
 
+use std::fs;
+
 use hdl_gen::plan::Plan;
 use testbench::trial::rtl_sources;
 use testbench::verilate::{Built, Verilate};
+
+use super::effort::some_of;
+use super::library_file;
+
+/// Some faults of modules of the library. The text of each is looked for, also of those that only `make test-long`
+/// tries. `place` gives a fault's module and that text.
+pub fn some_faults<T>(faults: impl IntoIterator<Item = T>, place: impl Fn(&T) -> (&str, &str)) -> Vec<T> {
+    let faults: Vec<T> = faults.into_iter().collect();
+    for (module, from) in faults.iter().map(place) {
+        replaced(module, &fs::read_to_string(library_file(module)).expect("readable"), from, "");
+    }
+    some_of(faults)
+}
+
+/// The same of faults of a driver.
+pub fn some_faults_of<'a, const N: usize>(text: &str, faults: [(&'a str, &'a str); N]) -> Vec<(&'a str, &'a str)> {
+    for (from, to) in faults {
+        replaced("the driver", text, from, to);
+    }
+    some_of(faults)
+}
 
 /// A text with `to` in place of `from`, which must stand in it once: nobody notices a fault that is nowhere. `place` names
 /// the text for whoever moved it.

@@ -41,6 +41,14 @@ pub fn held(packets: &[Vec<u32>], random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
     packets.iter().flat_map(|packet| [packet.clone(), copy(packet), copy(packet)]).collect()
 }
 
+/// The packet of a frame's values. What fills its last beat means nothing: it is as large as a sample can be, and where
+/// it can be none, no number.
+pub fn filled(plan: &Plan, values: impl Iterator<Item = f64>) -> Vec<u32> {
+    let streams = plan.streams();
+    let behind = streams.beats_in() * streams.samples() - plan.taxels();
+    streams.packet(&values.chain(std::iter::repeat_n(f64::INFINITY, behind)).collect::<Vec<_>>())
+}
+
 /// Nothing presses.
 pub fn empty(plan: &Plan) -> Vec<u32> {
     vec![0; plan.taxels()]

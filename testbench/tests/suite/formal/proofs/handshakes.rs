@@ -25,17 +25,17 @@ const FREE: &[&str] = &[
     "*sptfra_unfold*",
 ];
 const REDUCED_BROKEN: &[Broken] = &[
-    ("turns", "(fields_due != RESIDUALS[1:0])", "1'b1"),
-    ("turns", "                    next_field_bank <= !next_field_bank;\n", ""),
-    ("turns", "(residuals_there != 2'd0) && friction_known", "(residuals_there != 2'd0)"),
-    ("turns", "friction_known && (fields", "friction_known && frame_ready && (fields"),
+    ("sptfra_turns", "(fields_due != RESIDUALS[1:0])", "1'b1"),
+    ("sptfra_turns", "                    next_field_bank <= !next_field_bank;\n", ""),
+    ("sptfra_turns", "(residuals_there != 2'd0) && friction_known", "(residuals_there != 2'd0)"),
+    ("sptfra_turns", "friction_known && (fields", "friction_known && frame_ready && (fields"),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
     ("sptfra_op", "summary_there && output_idle && ", "summary_there && "),
 ];
 const LATENCY_BROKEN: &[Broken] = &[
-    ("turns", "(INTERVAL == 0) && (fields_due != 2'd0)", "1'b0"),
-    ("turns", "(residuals_there != 2'd0) && friction_known", "(fields_due != 2'd0) && friction_known"),
+    ("sptfra_turns", "(INTERVAL == 0) && (fields_due != 2'd0)", "1'b0"),
+    ("sptfra_turns", "(residuals_there != 2'd0) && friction_known", "(fields_due != 2'd0) && friction_known"),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
     ("sptfra_op", "output_idle && ((FIELD == 0) || (fields_there != 2'd0))", "output_idle"),
@@ -43,8 +43,8 @@ const LATENCY_BROKEN: &[Broken] = &[
 ];
 const JOINT_BROKEN: &[Broken] = &[
     // The line has no third frame whose residual could wait for a place.
-    ("turns", "field_waits = residual_due || (", "field_waits = ("),
-    ("turns", "(residuals_there != 2'd0) && friction_known", "(residuals_there != 2'd0)"),
+    ("sptfra_turns", "field_waits = residual_due || (", "field_waits = ("),
+    ("sptfra_turns", "(residuals_there != 2'd0) && friction_known", "(residuals_there != 2'd0)"),
     ("sptfra_estimator_joint", "assign sums_take = search_start;", "assign sums_take = answer_take;"),
     ("sptfra_joint_stages", "u_there && search_free", "search_free"),
     ("sptfra_joint_stages", "searching ? features_start : !search_start", "searching ? features_start : 1'b1"),
@@ -70,8 +70,8 @@ const FEATURES_BROKEN: &[Broken] = &[
     ),
 ];
 const PAPER_BROKEN: &[Broken] = &[
-    ("turns", "(PLACES == 0) || (frames_held != PLACES)", "1'b1"),
-    ("turns", "wire free = !busy || issued;", "wire free = 1'b1;"),
+    ("sptfra_turns", "(PLACES == 0) || (frames_held != PLACES)", "1'b1"),
+    ("sptfra_turns", "wire free = !busy || issued;", "wire free = 1'b1;"),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
     ("sptfra_op", "summary_there && output_idle && ", "summary_there && "),
@@ -79,8 +79,8 @@ const PAPER_BROKEN: &[Broken] = &[
     ("sptfra_output", "issued && issued_last && advance", "issued && issued_last"),
 ];
 const RESULTANTS_BROKEN: &[Broken] = &[
-    ("turns", "(u_held != 2'd2) && ", ""),
-    ("turns", "wire free = !busy || issued;", "wire free = 1'b1;"),
+    ("sptfra_turns", "(u_held != 2'd2) && ", ""),
+    ("sptfra_turns", "wire free = !busy || issued;", "wire free = 1'b1;"),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
     ("sptfra_op", "summary_there && output_idle && ", "summary_there && "),
@@ -128,8 +128,8 @@ pub const PROOFS: &[Proof] = &[
         induction: "5",
         altered: &[("subject", ".RESIDUALS (2)", ".RESIDUALS (1)")],
         broken: &[
-            ("turns", "(fields_due != RESIDUALS[1:0])", "1'b1"),
-            ("turns", "field_waits = residual_due || (", "field_waits = ("),
+            ("sptfra_turns", "(fields_due != RESIDUALS[1:0])", "1'b1"),
+            ("sptfra_turns", "field_waits = residual_due || (", "field_waits = ("),
         ],
     },
     Proof {
