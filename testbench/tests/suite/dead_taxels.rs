@@ -1,19 +1,17 @@
 //! Dead taxels in the RTL: alone, side by side, in corners, eight at once; whatever they read, even no number.
 
 use golden::design::{Calibration, Design, Input, Outputs, PlanKind};
-use hdl_gen::model::{Model, NOT_FINITE, REPLACED, SATURATED, TOO_MANY_REPLACED};
+use hdl_gen::model::{NOT_FINITE, REPLACED, SATURATED, TOO_MANY_REPLACED};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::dead::DeadPlan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use testbench::stream::{Reset, Traffic, exchange};
 use testbench::stream_words::encode;
-use testbench::trial::{model_answers, timeout};
-use testbench::verilate::Built;
+use testbench::trial::model_answers;
 
 use crate::support::effort::half_of;
 use crate::support::faults::broken;
-use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint};
+use crate::support::{built, by_plan, frames, in_parallel, planned, resets, shipped, simulate_exactly, with_joint};
 
 fn with_dead(mut design: Design, name: &str, dead: &[usize]) -> Design {
     name.clone_into(&mut design.name);
@@ -99,36 +97,11 @@ fn replaced_in_the_rtl_as_in_the_model() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// Resets of one cycle, in each cycle of an interval once: an answer that is another than the model's, if there is one.
-fn after_resets(plan: &Plan, built: &Built) -> Result<(), String> {
-    let interval = plan.timeline.interval_cycles;
-    let mut random = ChaCha8Rng::seed_from_u64(11);
-    let sent: Vec<_> = (0..8 * interval).map(|_| frames::contact(plan, &mut random)).collect();
-    // A core that has been reset begins anew: moments count from the reset before.
-    let moments = (0..interval).scan(0, |cycle, moment| {
-        *cycle += 2 * interval + moment;
-        Some(*cycle)
-    });
-    let resets: Vec<Reset> = moments.map(|cycle| Reset { cycle, length: 1 }).collect();
-    let traffic = Traffic::new(&sent, 8 * timeout(plan)).with_resets(&resets);
-    let outcome = exchange(&mut built.load(5).expect("loads"), &traffic, |_| ()).map_err(|error| error.to_string())?;
-    assert_eq!(outcome.resumed.len(), resets.len(), "every reset took place");
-    for (sent_between, exchanges) in outcome.between_resets(sent.len()) {
-        let mut model = Model::new(plan);
-        for (packet, exchange) in sent_between.zip(exchanges) {
-            if exchange.packet != packet || exchange.words != model.process(&sent[packet]) {
-                return Err(format!("packet {packet} has another answer"));
-            }
-        }
-    }
-    Ok(())
-}
-
 #[test]
 fn a_reset_leaves_no_end_of_a_frame() {
     let design = by_plan(shipped("small"), PlanKind::Reduced, Outputs::Resultants);
     let plan = planned(&with_dead(design, "dead_reset", &[5]));
-    after_resets(&plan, &built(&plan)).unwrap();
+    resets::in_each_cycle(&plan, &built(&plan)).unwrap();
     let left = broken(&plan, "sptfra_replace", "            lasts <= 4'd0;\n", "");
-    assert!(after_resets(&plan, &left).is_err(), "the end of a frame passes a reset");
+    assert!(resets::in_each_cycle(&plan, &left).is_err(), "the end of a frame passes a reset");
 }

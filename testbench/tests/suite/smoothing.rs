@@ -1,19 +1,20 @@
 //! Averages over frames, and creep: RTL and model alike in all stream modes, among bad frames, steps and resets.
 
 use crate::support::faults::{broken, some_faults};
+use crate::support::resets::{self, judged};
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint};
 use golden::creep::Creep;
 use golden::dead_taxels::DeadTaxels;
 use golden::design::{Design, Outputs, Overrun, PlanKind, Samples, Scaling};
 use golden::scene::normal;
 use golden::solver::{Solution, Solver};
-use hdl_gen::model::{BAD_LENGTH, DROPPED, Model, NOT_FINITE};
+use hdl_gen::model::{BAD_LENGTH, Model, NOT_FINITE};
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::accuracy::SolverError;
 use testbench::registers::{Access, Controlled, address};
-use testbench::stream::{Mode, Outcome, Pacing, Reset, Traffic, exchange};
+use testbench::stream::{Mode, Pacing, Reset, Traffic, exchange};
 use testbench::stream_words::{Answer, decode};
 use testbench::trial::{model_answers, timeout};
 use testbench::verilate::Built;
@@ -47,11 +48,18 @@ fn designs() -> Vec<Design> {
     counts.hardware.samples = Samples::Int16;
     counts.hardware.stream_bits = 64;
     let fixed = small("fixed", paper, Outputs::Field, Scaling::Fixed, 4);
+    // Three samples in the last beat of four.
     let mut wide = small("wide", reduced, Outputs::Field, Scaling::Fixed, 2);
+    (wide.sensor.columns, wide.sensor.rows) = (3, 5);
     wide.hardware.stream_bits = 128;
     let mut creeps = small("creeps", reduced, Outputs::Field, Scaling::PerFrame, 0);
     creeps.input.creep = Some(CREEP);
     vec![plain, of_paper, corrected, counts, fixed, wide, creeps]
+}
+
+/// The plan of one of them.
+fn designed(name: &str) -> Plan {
+    planned(&designs().into_iter().find(|design| design.name == name).expect("one of them"))
 }
 
 /// Contacts that are held, with noise, and released; each frame as often as it takes to see both what is averaged and restarts.
@@ -74,12 +82,35 @@ fn packet(plan: &Plan, stress: &[f64]) -> Vec<u32> {
         Samples::Float32 => input.from_pa(taxel, stress),
         _ => samples.clip(input.from_pa(taxel, stress).round()),
     };
-    plan.streams().packet(&stress.iter().enumerate().map(value).collect::<Vec<_>>())
+    frames::filled(plan, stress.iter().enumerate().map(value))
 }
 
-fn packets(plan: &Plan, seed: u64) -> Vec<Vec<u32>> {
+fn contacts(plan: &Plan, seed: u64) -> Vec<Vec<u32>> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     pascals(plan, &mut random).iter().map(|stress| packet(plan, stress)).collect()
+}
+
+/// The same, then frames that a limit decides on.
+fn packets(plan: &Plan, seed: u64) -> Vec<Vec<u32>> {
+    let full_scale = plan.design.hardware.full_scale_pa;
+    let last_taxel = plan.taxels() - 1;
+    // The last taxel is the largest: it allows the first one a step, then makes a larger one itself.
+    let with = |first: f64, last: f64| {
+        let mut stress = vec![-0.01 * full_scale; plan.taxels()];
+        (stress[0], stress[last_taxel]) = (-first * full_scale, -last * full_scale);
+        stress
+    };
+    let steps = [with(0.01, 0.2), with(0.016, 0.2), with(0.016, 0.18)];
+    // What was held for long has crept: the last reading less this is beyond the full scale, on either side.
+    let beyond = [full_scale, -full_scale].into_iter().flat_map(|stress| {
+        let held = vec![0.5 * stress; plan.taxels()];
+        let mut last = held.clone();
+        last[1] = -stress;
+        std::iter::repeat_n(held, 10).chain([last])
+    });
+    let mut sent = contacts(plan, seed);
+    sent.extend(steps.into_iter().chain(beyond).map(|stress| packet(plan, &stress)));
+    sent
 }
 
 #[test]
@@ -110,24 +141,6 @@ fn with_bad_frames(plan: &Plan) -> Vec<Vec<u32>> {
         sent.extend([packet, bad].into_iter().filter(|packet| !packet.is_empty()));
     }
     sent
-}
-
-/// Whether each answer is the model's, which begins anew with each reset and knows nothing of what was dropped.
-fn judged(plan: &Plan, packets: &[Vec<u32>], outcome: &Outcome) -> Result<(), String> {
-    for (sent, exchanges) in outcome.between_resets(packets.len()) {
-        let (mut model, mut next) = (Model::new(plan), sent.start);
-        for exchange in exchanges {
-            let mut expected = model.process(&packets[exchange.packet]);
-            if plan.streams().drops && exchange.packet > next {
-                expected[0] |= DROPPED;
-            }
-            next = exchange.packet + 1;
-            if exchange.words != expected {
-                return Err(format!("{}: packet {}, {:?}", plan.design.name, exchange.packet, outcome.resumed));
-            }
-        }
-    }
-    Ok(())
 }
 
 /// A traffic of good and bad frames with resets among them.
@@ -247,7 +260,7 @@ fn the_model_averages_as_the_solver_does() {
     for design in designs() {
         let mut alone = design.clone();
         (alone.input.smoothing, alone.input.creep) = (0, None);
-        let sent = packets(&planned(&design), 7);
+        let sent = contacts(&planned(&design), 7);
         let error = |model: &Design, solver: &Design| {
             let plan = planned(model);
             let answers = model_answers(&plan, &sent).into_iter().filter_map(|words| decode(&words));
@@ -259,6 +272,7 @@ fn the_model_averages_as_the_solver_does() {
             // Where a contact and what fades of the one before cancel, a force has no scale.
             let (answers, solutions): (Vec<Answer>, Vec<Solution>) =
                 answers.zip(solutions).filter(|(_, solution)| force(solution) > 0.02 * largest).unzip();
+            assert!(2 * answers.len() > sent.len(), "{}: {} frames have a scale", plan.design.name, answers.len());
             SolverError::new(&answers, &solutions).resultant_max
         };
         let [smoothed, without, mixed] = [error(&design, &design), error(&alone, &alone), error(&alone, &design)];
@@ -304,6 +318,11 @@ fn faults_are_noticed() {
         ("takes[1+LEVELS] && (magnitude > most)", "takes[1] && (magnitude > most)"),
         ("rate_held <= rate;", "rate_held <= 4'd1;"),
         ("$signed({stress_1[26], stress_1, 9'h100}) - old_1", "$signed({stress_1[26], stress_1, 9'h000}) - old_1"),
+        (
+            "stress_1 <= counted[sample] ? in_stresses[27*sample +: 27] : 27'd0;",
+            "stress_1 <= in_stresses[27*sample +: 27];",
+        ),
+        ("((in_flags[SAMPLES:1] & counted) != ", "(in_flags[SAMPLES:1] != "),
     ];
     let of_creep = [
         ("if (good_ends) begin", "if (in_ends) begin"),
@@ -314,17 +333,35 @@ fn faults_are_noticed() {
         ("!bank, place};", "bank, place};"),
         ("{{27{1'b0}}, 1'b1, {(FRACTION-1){1'b0}}}", "{CREEP_BITS{1'b0}}"),
         ("(stress_1 < -MOST)", "1'b0"),
+        ("(stress_1 > MOST)", "1'b0"),
         ("- FRACTION - 1)", "- FRACTION)"),
     ];
     // A beat with four samples, which may be no numbers.
-    let [.., averages, creeps] = &designs()[..] else { unreachable!() };
-    let [averages, creeps] = [averages, creeps].map(planned);
+    let [averages, creeps] = ["smooth_wide", "smooth_creeps"].map(designed);
     let [free, ..] = Mode::all(5);
     let faults = faults.map(|fault| (&averages, "sptfra_smoothing", fault)).into_iter();
     let faults = faults.chain(of_creep.map(|fault| (&creeps, "sptfra_creep", fault)));
     let faults = some_faults(faults, |&(_, module, (from, _))| (module, from));
     let missed = in_parallel(&faults, |&(plan, module, (from, to))| {
         with_resets(plan, &broken(plan, module, from, to), &free).is_ok().then_some(from)
+    });
+    assert_eq!(missed.into_iter().flatten().collect::<Vec<_>>(), Vec::<&str>::new());
+}
+
+#[test]
+fn resets_in_each_cycle_are_right() {
+    let [corrected, wide, creeps] = ["smooth_corrected", "smooth_wide", "smooth_creeps"].map(designed);
+    let wrong = in_parallel(&[&corrected, &wide, &creeps], |plan| resets::in_each_cycle(plan, &built(plan)).err());
+    assert_eq!(wrong.into_iter().flatten().collect::<Vec<_>>(), Vec::<String>::new());
+    // Ends of a frame that a reset leaves.
+    let faults = [
+        (&corrected, "sptfra_crosstalk", "            lasts <= 3'd0;\n"),
+        (&wide, "sptfra_smoothing", "            ends <= {SETTLES{1'b0}};\n"),
+        (&creeps, "sptfra_creep", "            ends <= 2'd0;\n"),
+    ];
+    let faults = some_faults(faults, |&(_, module, from)| (module, from));
+    let missed = in_parallel(&faults, |&(plan, module, from)| {
+        resets::in_each_cycle(plan, &broken(plan, module, from, "")).is_ok().then_some(module)
     });
     assert_eq!(missed.into_iter().flatten().collect::<Vec<_>>(), Vec::<&str>::new());
 }

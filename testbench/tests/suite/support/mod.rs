@@ -10,6 +10,7 @@ pub mod faults;
 pub mod frames;
 pub mod player;
 pub mod random;
+pub mod resets;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,0 +1,52 @@
+//! What comes out between resets.
+
+use hdl_gen::model::{DROPPED, Model};
+use hdl_gen::plan::Plan;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use testbench::stream::{Outcome, Reset, Traffic, exchange};
+use testbench::trial::timeout;
+use testbench::verilate::Built;
+
+use super::frames;
+
+/// Whether each answer is the model's, which begins anew with each reset and knows nothing of what was dropped.
+///
+/// # Errors
+/// The packet with another answer.
+pub fn judged(plan: &Plan, packets: &[Vec<u32>], outcome: &Outcome) -> Result<(), String> {
+    for (sent, exchanges) in outcome.between_resets(packets.len()) {
+        let (mut model, mut next) = (Model::new(plan), sent.start);
+        for exchange in exchanges {
+            let mut expected = model.process(&packets[exchange.packet]);
+            if plan.streams().drops && exchange.packet > next {
+                expected[0] |= DROPPED;
+            }
+            next = exchange.packet + 1;
+            if exchange.words != expected {
+                return Err(format!("{}: packet {}, {:?}", plan.design.name, exchange.packet, outcome.resumed));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Resets of one cycle, in each cycle of an interval once.
+///
+/// # Errors
+/// A rule of the stream that is broken, or a packet with another answer than the model's.
+pub fn in_each_cycle(plan: &Plan, built: &Built) -> Result<(), String> {
+    let interval = plan.timeline.interval_cycles;
+    let mut random = ChaCha8Rng::seed_from_u64(11);
+    let sent: Vec<_> = (0..8 * interval).map(|_| frames::contact(plan, &mut random)).collect();
+    // A core that has been reset begins anew: moments count from the reset before.
+    let moments = (0..interval).scan(0, |cycle, moment| {
+        *cycle += 2 * interval + moment;
+        Some(*cycle)
+    });
+    let resets: Vec<Reset> = moments.map(|cycle| Reset { cycle, length: 1 }).collect();
+    let traffic = Traffic::new(&sent, 8 * timeout(plan)).with_resets(&resets);
+    let outcome = exchange(&mut built.load(5).expect("loads"), &traffic, |_| ()).map_err(|error| error.to_string())?;
+    assert_eq!(outcome.resumed.len(), resets.len(), "every reset took place");
+    judged(plan, &sent, &outcome)
+}
