@@ -82,11 +82,11 @@ module harness (
         .\gen_scale.for_direction.oldest_place (oldest[15:12]),
         .\gen_scale.for_output.newest_place (newest[19:16]),
         .\gen_scale.for_output.oldest_place (oldest[19:16]),
-        .\beginnings.words (beginnings),
-        .\gen_calibration.for_cean.words (for_cean),
-        .\gen_calibration.for_output.words (versions),
-        .\gen_scale.for_direction.words (for_direction),
-        .\gen_scale.for_output.words (exponents)
+        .\beginnings.seen (beginnings),
+        .\gen_calibration.for_cean.seen (for_cean),
+        .\gen_calibration.for_output.seen (versions),
+        .\gen_scale.for_direction.seen (for_direction),
+        .\gen_scale.for_output.seen (exponents)
     );
 
     // ---- Frames that have passed each place, modulo 32
@@ -156,7 +156,7 @@ module harness (
     // ---- What the core keeps: a frame passes all places in their order, and no more than sixteen are inside
     always @(*) begin
         if (started) begin
-            assume (!begins || (inside != 5'd16));
+            assume (!begins || take || (inside != 5'd16));
             assume (!calibrated || (with_calibration != pushed));
             assume (!cean_take || (measured != with_calibration));
             assume (!scaled || (with_scale != pushed));

@@ -46,7 +46,7 @@ module sptfra_context_field #(
         held <= held + {4'd0, write} - {4'd0, take};
         if (reset) begin
             held <= 5'd0;
-        end else if ((take && (held == 5'd0)) || (write && (held == 5'd16))) begin
+        end else if ((take && (held == 5'd0)) || (write && !take && (held == 5'd16))) begin
             $fdisplay(32'h80000002, "%m: a frame leaves that has not come, or more are inside than there is room for");
             $fatal(1);
         end

@@ -34,12 +34,22 @@ pub const PROOFS: &[Proof] = &[
         defines: &[],
         top: "sptfra_frame_context",
         parameters: "-set DROPS 1 -set CALIBRATED 1 -set SCALED 1",
-        models: &[("sptfra_context_field", "context_field_model")],
+        models: &[],
         free: &[],
         free_wires: &[],
         induction: "1",
-        altered: &[],
+        // The harness sees all words.
+        altered: &[(
+            "sptfra_context_field",
+            "    assign oldest = words[oldest_place];\n",
+            "    assign oldest = words[oldest_place];
+    wire [16*WIDTH-1:0] seen = {words[15], words[14], words[13], words[12], words[11], words[10], words[9], words[8],
+        words[7], words[6], words[5], words[4], words[3], words[2], words[1], words[0]};\n",
+        )],
         broken: &[
+            ("sptfra_context_field", "newest_place + 4'd1", "newest_place + 4'd2"),
+            ("sptfra_context_field", "oldest_place + 4'd1", "oldest_place + 4'd2"),
+            ("sptfra_context_field", "words[newest_place] <=", "words[oldest_place] <="),
             ("sptfra_frame_context", "wire begins = in_taken && !in_frame;", "wire begins = in_taken;"),
             ("sptfra_frame_context", ".take       (cean_take),", ".take       (take),"),
             ("sptfra_frame_context", ".take       (direction_take),", ".take       (take),"),
