@@ -42,6 +42,12 @@ module sptfra_creep #(
     localparam [CREEP_BITS-1:0] HALF = {{27{1'b0}}, 1'b1, {(FRACTION-1){1'b0}}}; // of a step: rounds what is cut
     localparam signed [27:0] MOST = {STRESS_BOUND[26], STRESS_BOUND};
 
+    generate
+        if (SHARE[22:17] <= FRACTION) begin : gen_check_share
+            sptfra_error_the_share_has_18_fraction_bits_and_more invalid ();
+        end
+    endgenerate
+
     // ---- Of the frame
     reg [TAXEL_WIDTH-1:0] place; // of the reading that comes
     reg bank; // of the creep of the last good frame
@@ -98,8 +104,8 @@ module sptfra_creep #(
     wire signed [44:0] end_low_3, end_high_3; // the product is their sum
     wire signed [44:0] end_3 = end_low_3 + end_high_3;
     reg signed [26:0] end_4;
-    wire signed [27:0] way_4;
-    reg signed [26:0] half_way_5;
+    wire signed [27:0] remaining_4;
+    reg signed [26:0] half_remaining_5;
     wire signed [44:0] step_low_6, step_high_6; // the product is their sum
     wire signed [44:0] step_6 = step_low_6 + step_high_6;
     reg signed [CREEP_BITS-1:0] creep_2, creep_3, creep_4, creep_5, creep_6, creep_7;
@@ -107,7 +113,7 @@ module sptfra_creep #(
         + (step_6 >>> (SHARE[22:17] - FRACTION - 1));
     wire signed [44:0] cut_3 = end_3 >>> STRENGTH[22:17];
 
-    assign way_4 = $signed({end_4[26], end_4}) - $signed({creep_4[CREEP_BITS-1], creep_4[CREEP_BITS-1:FRACTION]});
+    assign remaining_4 = $signed({end_4[26], end_4}) - $signed({creep_4[CREEP_BITS-1], creep_4[CREEP_BITS-1:FRACTION]});
 
     sptfra_multiply strength_multiplier (
         .clock       (clock),
@@ -122,7 +128,7 @@ module sptfra_creep #(
         .clock       (clock),
         .enable      (1'b1),
         .coefficient ({1'b0, SHARE[16:0]}),
-        .data        (half_way_5),
+        .data        (half_remaining_5),
         .low         (step_low_6),
         .high        (step_high_6)
     );
@@ -150,12 +156,12 @@ module sptfra_creep #(
         creep_4 <= creep_3;
         end_4 <= cut_3[26:0];
         creep_5 <= creep_4;
-        half_way_5 <= way_4[27:1];
+        half_remaining_5 <= remaining_4[27:1];
         creep_6 <= creep_5;
         creep_7 <= creep_on_6[CREEP_BITS-1:0];
     end
 
-    wire _unused = &{1'b0, cut_3[44:27], way_4[0], creep_on_6[44]};
+    wire _unused = &{1'b0, cut_3[44:27], remaining_4[0], creep_on_6[44]};
 
 endmodule
 
