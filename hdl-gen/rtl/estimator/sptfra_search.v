@@ -244,9 +244,8 @@ module sptfra_search #(
                 reading <= (pair && !second) || (KNOWN_IN_TIME && (state == LEVEL) && !right_last);
             end
         end
-        resume <= 1'b0;
         if (resume) begin
-            reading <= 1'b1;
+            {reading, resume} <= 2'b10;
         end
         wait_count <= wait_count + 2'd1;
         if (cells_saturated) begin
