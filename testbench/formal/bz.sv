@@ -51,7 +51,7 @@ module harness (
     wire seen_not_finite;
     wire [14:0] stages;
     wire ended;
-    wire told_before;
+    wire flags_sent;
     wire folded;
     wire [ROW_BITS-1:0] quad;
     wire [4:1] fold_valid;
@@ -96,7 +96,7 @@ module harness (
         .\writer.seen_not_finite (seen_not_finite),
         .\writer.frame_written (frame_written),
         .\writer.ended (ended),
-        .\writer.told_before (told_before),
+        .\writer.flags_sent (flags_sent),
         .\writer.fold.done (folded),
         .\writer.fold.turn (fold_turn),
         .\writer.fold.quad (quad),
@@ -254,7 +254,7 @@ module harness (
             assert (element < ELEMENTS);
             assert (turned <= ELEMENTS);
             assert (ended == kept);
-            assert (told_before == ended);
+            assert (flags_sent == ended);
             assert (folded == (turned == ELEMENTS));
             assert (folded || (quad == ELEMENTS[ROW_BITS-1:0] - 1'b1 - turned[ROW_BITS-1:0]));
             assert (!folded || kept);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Counts frames and measures their cycles, from the handshakes of a core's two streams. Sixteen frames may be inside.
+// Counts frames and measures their cycles, from the handshakes of a core's two streams; counts dropped frames too.
+//
+// Sixteen frames may be inside.
 
 `default_nettype none
 

@@ -3,8 +3,8 @@
 //
 // The registers behind the AXI4-Lite port: what the design is, soft reset, status, interrupts, counters.
 //
-// Reads answer in the same cycle. A soft reset clears counters, not interrupts. The map is that of the design's
-// control/NAME.rdl.
+// Reads answer in the same cycle. A soft reset clears the counters. Interrupts and the rate of the average stay. The
+// map is that of the design's control/NAME.rdl.
 
 `default_nettype none
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// One-pass connected-component labelling, one taxel a cycle in raster order: seeds that are neighbours along x or y;
-// the sum of |w| over each component, and the count of components with the least sum.
+// One-pass connected-component labelling, one taxel a cycle in raster order: counts components with the least sum.
 //
-// The labels of the last row's taxels stand in a shift register, one step longer than a row: each row ends with a step
-// that is no seed. A taxel whose neighbours have two labels renames one to the other in the same cycle, everywhere in
-// the register. A new label is the parity of its row and half its column, so that each run of seeds has a label of its
-// own in its row. The run gives it to the component above, and the labels of a row are free again two rows later: for
-// any grid there are no more than COLUMNS + 1 of them.
+// Seeds that are neighbours along x or y are of one component. Its sum is that of |w|. The labels of the last row's
+// taxels stand in a shift register, one step longer than a row. Each row ends with a step that is no seed. A taxel
+// whose neighbours have two labels renames one to the other in the same cycle, everywhere in the register. A new label
+// is the parity of its row and half its column. So each run of seeds has a label of its own in its row. The run gives
+// it to the component above. The labels of a row are free again two rows later: any grid needs COLUMNS + 1 at most.
 //
 // A run of taxels adds its own and, where it joins another component, that one's sum. Between two runs a taxel passes
 // that does not count, so that a sum is written before anything can join it. Sums only grow: one that reaches the

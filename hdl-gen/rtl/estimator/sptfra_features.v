@@ -3,10 +3,12 @@
 //
 // Feature window: stress of the normal forces alone, around the contact's centre.
 //
-// Along its way: scale (1 / sum |b|, during the grid search), stress (a quad in two cycles, its compression's
-// moments), their centroid; when the network is free for it the window (folded into parity classes). While one frame is
-// in the window the next one may start. From start to the scale: 8 cycles and a division; from features_start to
-// features_done: two cycles a quad, and 33; from window_start to window_done: 10, and one a word.
+// First comes the scale, 1 / sum |b|, during the grid search. Then the stress, a quad in two cycles, the moments of its
+// compression and their centroid. The window waits until the network is free, and is folded into parity classes. While
+// one frame is in the window the next one may start.
+//
+// From start to the scale: 8 cycles and a division. From features_start to features_done: two cycles a quad, and 33.
+// From window_start to window_done: 10, and one a word.
 
 `default_nettype none
 

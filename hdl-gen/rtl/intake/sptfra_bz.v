@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Bz: takes frames of stresses or counts from the stream, checks them, and writes them as fixed point into one
-// of two banks of the lanes' operand memories: taxel by taxel, or folded into parity classes.
+// Bz: takes frames of stresses or counts from the stream, checks them, and writes them to the lanes' operand memories.
 //
 // Beat to stress: as of sptfra_samples, a beat a cycle; what fills a frame's last beat behind its samples is ignored.
-// A frame is accepted while a bank is free and CeAn has finished the frame before. Frames of a wrong length are
-// swallowed up to their TLAST and marked. Calibration bank and smoothing are those at a frame's first beat.
+// A frame is accepted while one of two banks is free and CeAn has finished the frame before. Frames of a wrong length
+// are swallowed up to their TLAST and marked. Calibration bank and smoothing are those at a frame's first beat.
 
 `default_nettype none
 

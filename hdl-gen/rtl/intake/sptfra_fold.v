@@ -15,7 +15,7 @@ module sptfra_fold #(
     parameter COLUMNS = 10,
     parameter ROWS = 10,
     parameter SAMPLES = 1,
-    // Of a beat of one taxel, its stress and the average of it, or the stress alone
+    // 2: each taxel has a stress and an average of it; 1: a stress
     parameter CANDIDATES = 1,
     // 4: folded into parity classes; 1: as they are, in the order of taxels
     parameter WAYS = 4,
@@ -37,7 +37,7 @@ module sptfra_fold #(
     // The frame as it comes
     input  wire beat_valid,
     input  wire [BEAT_WIDTH-1:0] beat,
-    input  wire [CANDIDATES*SAMPLES*STRESS_BITS-1:0] stresses,
+    input  wire [CANDIDATES*SAMPLES*STRESS_BITS-1:0] stresses, // sample by sample, its candidates side by side
     input  wire averaged, // the frame is made of averages, from the first turn on
     input  wire [COUNT_WIDTH-1:0] written, // beats whose quads may have their turn
     input  wire whole, // all quads may

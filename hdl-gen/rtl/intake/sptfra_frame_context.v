@@ -13,8 +13,8 @@
 // | version, replaced  | when calibration begins | output            |
 // | exponent           | when the scale is found | estimator, output |
 //
-// The timestamp counts cycles from the reset, modulo 2^32: 0 is the first cycle after that of the core, whose register
-// resets this module a cycle later. Outputs are valid in the same cycle; the thresholds pass a register.
+// The timestamp counts cycles, modulo 2^32: 0 is the first cycle after the core's reset. A register resets this module
+// a cycle later. Outputs are valid in the same cycle; the thresholds pass a register.
 
 `default_nettype none
 

@@ -3,9 +3,11 @@
 //
 // Frame scale: the largest power of two, not below one, that keeps a frame's largest stress within the full scale.
 //
-// `whole` rises 5 cycles after the frame's last beat, the exponent is there two cycles later and held; each later by
-// the logarithm of the samples of a beat. All behind the operand memories is homogeneous: the scaled frame has the
-// friction of the frame, and forces that are larger by its power of two: see sptfra_frame_context.
+// `whole` rises 5 cycles after the frame's last beat. The exponent is there two cycles later and held. Both are later
+// by the logarithm of the samples of a beat.
+//
+// All behind the operand memories is homogeneous. So the scaled frame has the friction of the frame, and forces that
+// are larger by its power of two. sptfra_frame_context keeps that for the output.
 
 `default_nettype none
 
@@ -20,7 +22,7 @@ module sptfra_frame_scale #(
     input  wire reset,
     // Beats
     input  wire beat_valid,
-    input  wire [27*SAMPLES*CANDIDATES-1:0] stresses,
+    input  wire [27*SAMPLES*CANDIDATES-1:0] stresses, // candidate by candidate, the samples of each side by side
     input  wire [SAMPLES-1:0] counted, // samples of the frame
     input  wire ends, // the frame ends, with its last beat or after it
     input  wire bad_length,

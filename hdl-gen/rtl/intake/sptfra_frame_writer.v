@@ -147,7 +147,7 @@ module sptfra_frame_writer #(
     reg ended; // the frame's last beat is there
     reg [COUNT_WIDTH-1:0] written; // beats that are there
     wire smoothing_busy, takes, ends, bad_length_now, replaced, settled, averaged, over;
-    wire [27*SAMPLES*CANDIDATES-1:0] stresses;
+    wire [27*SAMPLES*CANDIDATES-1:0] stresses; // candidate by candidate
     wire [SAMPLES-1:0] saturated, not_finite;
 
     generate
@@ -191,7 +191,7 @@ module sptfra_frame_writer #(
     localparam WORD_BITS = 27 * CANDIDATES + 1; // of a taxel: whether it was replaced, its candidates
     wire [WORD_BITS*SAMPLES-1:0] words;
     wire [WORD_BITS-1:0] word;
-    wire [STRESS_BITS*SAMPLES*CANDIDATES-1:0] narrow_stresses; // to the lanes
+    wire [STRESS_BITS*SAMPLES*CANDIDATES-1:0] narrow_stresses; // to the lanes, sample by sample
     genvar sample;
     genvar candidate;
 
@@ -237,11 +237,11 @@ module sptfra_frame_writer #(
     reg [29:0] replaced_before; // without the stress that is shown
     wire [26:0] magnitude = stress[26] ? -stress : stress;
     wire folded;
-    reg told_before;
+    reg flags_sent;
     wire [SAMPLES-1:0] counted = (written == LAST_BEAT) ? REST_MASK[SAMPLES-1:0] : {SAMPLES{1'b1}};
     wire [31:0] written_wide = {{(32-COUNT_WIDTH){1'b0}}, written};
 
-    assign over = folded && (frame_done || told_before); // the lanes have it all, and CeAn its flags
+    assign over = folded && (frame_done || flags_sent); // the lanes have it all, and CeAn its flags
     assign busy = ended || corrections_busy || smoothing_busy;
     assign frame_saturated = seen_saturated || (takes && ((saturated & counted) != {SAMPLES{1'b0}}));
     assign frame_not_finite = seen_not_finite || (takes && ((not_finite & counted) != {SAMPLES{1'b0}}));
@@ -260,11 +260,11 @@ module sptfra_frame_writer #(
             ended <= 1'b1;
         end
         if (frame_done) begin
-            told_before <= 1'b1;
+            flags_sent <= 1'b1;
         end
         if (reset || over) begin
             ended <= 1'b0;
-            told_before <= 1'b0;
+            flags_sent <= 1'b0;
             written <= {COUNT_WIDTH{1'b0}};
         end
         if (reset || frame_done) begin

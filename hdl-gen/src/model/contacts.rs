@@ -2,15 +2,15 @@
 
 use golden::contacts::Labels;
 
-/// [`golden::contacts::SHARE`], which is over 64: of the largest `|w|`, above which a taxel touches, and of all `|w|`, from
-/// which on a component is a contact.
+/// [`golden::contacts::SHARE`], which is over 64. Above this share of the largest `|w|` a taxel touches. From this share
+/// of all `|w|` on a component is a contact.
 pub(super) const SHARE: i64 = 5;
 pub(super) const SHARE_OF: i64 = 64;
 
 const _: () = assert!((golden::contacts::SHARE * SHARE_OF as f64) as i64 == SHARE);
 
-/// Contacts by the steps of each taxel's `|w|` on a grid of `columns`: components of touching taxels that have a share of
-/// all, and one where none has.
+/// Contacts by the steps of each taxel's `|w|` on a grid of `columns`, one at least. They are the components of touching
+/// taxels that have a share of all.
 pub fn count(weight: &[i64], columns: usize) -> u32 {
     let largest = weight.iter().copied().max().unwrap_or(0);
     let touched: Vec<bool> = weight.iter().map(|&weight| SHARE_OF * weight > SHARE * largest).collect();

@@ -11,8 +11,8 @@ pub const WORD_BITS: usize = 32;
 pub enum Intake {
     /// A beat is a sample.
     Single,
-    /// A beat's samples are handed on one by one: where taxels are not folded, dead ones are replaced, crosstalk or
-    /// creep is removed, or gains stand in RAM.
+    /// A beat's samples are handed on one by one. So it is where taxels are not folded, dead ones are replaced,
+    /// crosstalk or creep is removed, or gains stand in RAM.
     Unpacked,
     /// All samples of a beat at once.
     Whole,

@@ -1,7 +1,8 @@
-//! Cycles from block to block in the hardware, each a count of pipeline registers: the schedule, the predicted times
-//! and the checks in simulation read them here. They are needed before there is a plan, and so stand apart from what
-//! the blocks make of one. `folded` says whether vectors are folded by parity. Cycles of an estimator stand with it,
-//! those of a leaf core in [`crate::cores`].
+//! Cycles from block to block in the hardware, each a count of pipeline registers.
+//!
+//! The schedule, the predicted times and the checks in simulation read them here. They are needed before there is a
+//! plan, and so stand apart from what the blocks make of one. `folded` says whether vectors are folded by parity. Cycles
+//! of an estimator stand with it, those of a leaf core in [`crate::cores`].
 
 use golden::sensor::Sensor;
 
@@ -12,8 +13,10 @@ use crate::cores::{axis_skid, cordic, float_to_fixed};
 pub const OVERRUN: u64 = 2 - axis_skid::LATENCY as u64;
 
 // ---- Bz
-/// From a beat entering the conversion to its stress: of the float conversion, behind the memory of its exponent and a
-/// register where each taxel has one, or of the conversion and a curve; of the counts' gains if there are any.
+/// From a beat entering the conversion to its stress.
+///
+/// Where each taxel has an exponent, its memory and a register stand in front of the conversion. A curve and the counts'
+/// gains, if there are any, stand behind it.
 pub fn beat_to_stress(counts: bool, per_taxel: bool, curve: Option<u64>) -> u64 {
     let exponent = if per_taxel { 2 } else { 0 };
     // Gain, product, sum, limits; behind a curve the product is shifted in three more.
@@ -36,8 +39,8 @@ pub const CREEP: u64 = 2;
 
 /// From a stress to the average with it.
 pub const SMOOTHING: u64 = 4;
-/// From a frame's last average to the first element's turn, where no scale takes longer: the largest step of a beat is
-/// found by a tree.
+/// From a frame's last average to the first element's turn, where no scale takes longer. A tree finds the largest step
+/// of a beat.
 pub fn smoothing_decided(samples: usize) -> u64 {
     1 + u64::from(samples.ilog2())
 }
@@ -47,8 +50,8 @@ pub fn turn_to_write(scaled: bool) -> u64 {
     if scaled { 6 } else { 4 }
 }
 
-/// From a frame's last stress to the first element's turn, where each frame has a scale of its own: the largest stress of
-/// a beat is found by a tree.
+/// From a frame's last stress to the first element's turn, where each frame has a scale of its own. A tree finds the
+/// largest stress of a beat.
 pub fn frame_scale(samples: usize) -> u64 {
     5 + u64::from(samples.ilog2())
 }

@@ -166,7 +166,8 @@ fn recording(frames: &[SceneFrame]) -> (Vec<Vec<f64>>, String) {
     (stress, weights)
 }
 
-/// Counts of a scanner at rest, then under a weight that stays for a minute: they rise by a third, with a time constant of 10 s.
+/// Counts of a scanner at rest, then under a weight that stays for a minute. They rise by 0.4 of it, with a time constant
+/// of 10 s.
 fn constant_load(taxels: usize) -> String {
     let mut text = "t (s)".to_owned() + &(0..taxels).map(|taxel| format!(",p{taxel}")).collect::<String>() + "\n";
     for (frame, counts) in unloaded(taxels).iter().cycle().take(640).enumerate() {
