@@ -5,14 +5,25 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::design::Design;
+use crate::numbers::{magnitude, middle, rounded};
+
 /// Frames that a time constant has at least and at most: the hardware's fixed point holds these.
 pub const FRAMES: [f64; 2] = [2.0, 131_072.0];
 /// Time constants that a fit tries, a ratio apart.
 const TRIED: i32 = 1000;
-/// A step of load has at least so many frames.
+/// Seconds in which the weight is put down. What creeps sooner belongs to the load.
+const SETTLES: f64 = 1.0;
+/// Behind them a constant load has at least so many frames.
 const FEWEST: usize = 20;
+/// Without load readings change by less than this share of the load.
+const RESTS: f64 = 0.02;
 /// Rise of readings below which there is nothing to correct.
 const LEAST_RISE: f64 = 0.01;
+/// Frames may come later than the others by this share of their distance.
+const UNEVEN: f64 = 0.5;
+/// Significant digits that are written.
+const DIGITS: i32 = 4;
 
 /// Key `sensor.creep`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -40,13 +51,48 @@ impl Creep {
         -(-1.0 / self.frames()).exp_m1()
     }
 
-    /// Takes creep off a good frame, within `bound`, and lets it go on; `creep` is empty before the first frame.
+    /// Takes creep off a good frame of stresses, within `bound`, and lets it go on; `creep` is empty before the first frame, or
+    /// has the length of another sensor's.
     pub fn remove(&self, creep: &mut Vec<f64>, frame: &mut [f64], bound: f64) {
-        creep.resize(frame.len(), 0.0);
-        let share = self.share();
-        for (creep, stress) in creep.iter_mut().zip(frame) {
+        for (creep, stress) in self.of(creep, frame) {
             *stress = (*stress - *creep).clamp(-bound, bound);
-            *creep += share * (self.strength * *stress - *creep);
+            *creep += self.share() * (self.strength * *stress - *creep);
+        }
+    }
+
+    /// Adds creep to a frame of true stresses, as a sensor does, and lets it go on.
+    pub fn add(&self, creep: &mut Vec<f64>, frame: &mut [f64]) {
+        for (creep, stress) in self.of(creep, frame) {
+            let before = *creep;
+            *creep += self.share() * (self.strength * *stress - *creep);
+            *stress += before;
+        }
+    }
+
+    fn of<'a>(
+        &self,
+        creep: &'a mut Vec<f64>,
+        frame: &'a mut [f64],
+    ) -> impl Iterator<Item = (&'a mut f64, &'a mut f64)> {
+        if creep.len() != frame.len() {
+            *creep = vec![0.0; frame.len()];
+        }
+        creep.iter_mut().zip(frame)
+    }
+
+    /// Takes creep off the values of a recording, so that they are those of a design without it. What the first frame reads
+    /// counts as long there.
+    pub fn remove_from_recording(&self, design: &Design, frames: &mut [Vec<f64>]) {
+        let Some(first) = frames.first().cloned() else { return };
+        let mut creep = Vec::new();
+        for frame in frames {
+            let stress = |taxel: usize, frame: &[f64]| design.input.to_pa(taxel, frame[taxel]);
+            let mut change: Vec<f64> =
+                (0..frame.len()).map(|taxel| stress(taxel, frame) - stress(taxel, &first)).collect();
+            self.remove(&mut creep, &mut change, f64::INFINITY);
+            for taxel in (0..frame.len()).filter(|taxel| !design.input.dead.contains(taxel)) {
+                frame[taxel] = design.input.from_pa(taxel, change[taxel] + stress(taxel, &first));
+            }
         }
     }
 }
@@ -57,67 +103,93 @@ pub struct Fitted {
     /// What was found.
     pub creep: Creep,
     /// Seconds of constant load.
-    pub held: f64,
+    pub held_s: f64,
     /// Share by which the readings rose in that time.
     pub rise: f64,
-    /// Share by which they still change when creep is removed.
+    /// Standard deviation over the mean of the readings without creep.
     pub left: f64,
 }
 
-/// Finds strength and time constant from a step of load: `sums` are those of each frame's stresses, `seconds` apart, from a
-/// rest on. What lies above half of the largest is under load.
+/// Seconds from frame to frame, from their times in seconds.
+///
+/// # Errors
+///
+/// A gap, times that do not rise, or fewer than two: what is wrong and what to do.
+pub fn interval(times: &[f64]) -> Result<f64, String> {
+    let steps = || times.windows(2).map(|pair| pair[1] - pair[0]);
+    let interval = middle(steps());
+    let uneven = |step: &f64| !(0.0..=interval * (1.0 + UNEVEN)).contains(step);
+    if interval <= 0.0 || !interval.is_finite() {
+        return Err("its times do not rise from frame to frame".to_owned());
+    }
+    match steps().enumerate().find(|(_, step)| uneven(step)) {
+        Some((before, step)) => Err(format!(
+            "{step:.3} s pass after frame {}, where others are {interval:.3} s apart: record without gaps",
+            before + 1
+        )),
+        None => Ok(interval),
+    }
+}
+
+/// Finds strength and time constant from a step of load: `sums` are those of each frame's stresses in any unit, `seconds`
+/// apart, from a time without load on. What lies above half of the largest is under load.
 ///
 /// # Errors
 ///
 /// What the recording lacks and what to do.
 pub fn fit(sums: &[f64], seconds: f64) -> Result<Fitted, String> {
-    let largest = sums.iter().fold(0.0_f64, |largest, sum| largest.max(sum.abs()));
-    let loaded = |sum: &f64| sum.abs() > 0.5 * largest;
-    let begin = sums.iter().position(loaded).unwrap_or(0);
+    let first = sums.first().copied().unwrap_or(0.0);
+    let loaded = |sum: &f64| (sum - first).abs() > 0.5 * magnitude(sums.iter().map(|sum| sum - first));
+    let begin = sums.iter().position(loaded).unwrap_or(sums.len());
     let end = begin + sums[begin..].iter().position(|sum| !loaded(sum)).unwrap_or(sums.len() - begin);
-    // The load may arrive within a frame; the next one is taken for what it weighs.
-    let held: Vec<f64> = sums[(begin + 1).min(end)..end].iter().map(|sum| sum.abs()).collect();
+    // The weight's way down is neither unloaded nor constant.
+    let unloaded = &sums[..begin.div_ceil(2)];
+    let level = mean(unloaded);
+    let settled = begin + (SETTLES / seconds).ceil() as usize;
+    let held: Vec<f64> = sums[settled.min(end)..end].iter().map(|sum| (sum - level).abs()).collect();
     if begin == 0 || held.len() < FEWEST {
         return Err(format!(
-            "{} frames under load after {begin} without: begin without load, put a weight on in one move, and leave it \
-             for at least {FEWEST} frames",
+            "{begin} frames without load, then {} of constant load: begin without, put a weight down within {SETTLES} s, \
+             and leave it for a minute",
             held.len()
         ));
     }
-    let duration = seconds * held.len() as f64;
-    let ratio = (3.0 * held.len() as f64 / FRAMES[0]).powf(1.0 / f64::from(TRIED));
-    let tried = (0..=TRIED).map(|step| strength(&held, FRAMES[0] * ratio.powi(step)));
-    let Some((_, frames, strength)) = tried.min_by(|a, b| a.0.total_cmp(&b.0)) else {
-        return Err("no frames under load".to_owned());
+    let (early, late) = unloaded.split_at(unloaded.len() / 2);
+    if !early.is_empty() && (mean(early) - mean(late)).abs() > RESTS * mean(&held) {
+        return Err(
+            "the readings change before the load: begin when nothing has touched for five time constants".to_owned()
+        );
+    }
+    let (held_s, waited) = (seconds * held.len() as f64, settled - begin);
+    let shortest = FRAMES[0].max(waited as f64);
+    let ratio = (3.0 * held.len() as f64 / shortest).max(1.0).powf(1.0 / f64::from(TRIED));
+    let tried = (0..=TRIED).map(|step| strength(&held, waited, shortest * ratio.powi(step)));
+    let (_, frames, strength) = tried.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, shortest, 0.0));
+    let creep = Creep {
+        strength: rounded(strength, DIGITS),
+        seconds: rounded(seconds * frames, DIGITS),
+        frames_per_second: rounded(1.0 / seconds, DIGITS),
     };
-    let creep = Creep { strength, seconds: seconds * frames, frames_per_second: 1.0 / seconds };
-    let rise = creep.strength * (1.0 - (-(held.len() as f64) / frames).exp());
+    let rise = strength * (1.0 - (-(held.len() as f64) / frames).exp());
+    let percent = 100.0 * rise.abs();
     if rise < LEAST_RISE {
-        return Err(format!(
-            "the readings rise by {:.1} % in {duration:.1} s: there is no creep to correct",
-            100.0 * rise
-        ));
+        let way = if rise < 0.0 { "fall" } else { "rise" };
+        return Err(format!("the readings {way} by {percent:.1} % in {held_s:.1} s: there is no creep to correct"));
     }
     if frames > held.len() as f64 {
-        return Err(format!("the readings still rise after {duration:.1} s: leave the load for three times as long"));
+        return Err(format!("the readings still rise after {held_s:.1} s: leave the load for three times as long"));
     }
-    if creep.strength > 1.0 || frames > FRAMES[1] {
+    if frames <= shortest || strength > 1.0 || frames > FRAMES[1] {
         return Err(format!(
-            "the readings rise by {:.0} % with a time constant of {:.1} s: a correction reaches 100 % and {} frames",
-            100.0 * creep.strength,
-            creep.seconds,
-            FRAMES[1]
+            "the readings rise by {percent:.0} % with a time constant of {:.2} s: what can be corrected is 100 %, and {:.2} to \
+             {:.0} s",
+            seconds * frames,
+            seconds * shortest,
+            seconds * FRAMES[1]
         ));
     }
-    let mut past = Vec::new();
-    let corrected: Vec<f64> = held
-        .iter()
-        .map(|&sum| {
-            let mut frame = [sum];
-            creep.remove(&mut past, &mut frame, f64::INFINITY);
-            frame[0]
-        })
-        .collect();
+    let shape = |n: usize| creep.strength * (1.0 - (-(n as f64) / frames).exp());
+    let corrected: Vec<f64> = held.iter().zip(waited..).map(|(sum, n)| sum / (1.0 + shape(n))).collect();
     let left = spread(&corrected);
     if 2.0 * left > spread(&held) {
         return Err(format!(
@@ -126,25 +198,31 @@ pub fn fit(sums: &[f64], seconds: f64) -> Result<Fitted, String> {
             100.0 * spread(&held)
         ));
     }
-    Ok(Fitted { creep, held: duration, rise, left })
+    Ok(Fitted { creep, held_s, rise, left })
 }
 
-/// Least squares of the strength for a time constant in frames, with squared error, from the first reading on: that has crept
-/// for a frame.
-fn strength(sums: &[f64], frames: f64) -> (f64, f64, f64) {
+/// Squared error, time constant and strength: least squares of the strength for a time constant in frames. The first of
+/// the sums has crept for `waited` frames.
+fn strength(sums: &[f64], waited: usize, frames: f64) -> (f64, f64, f64) {
     let shape = |n: usize| -(-(n as f64) / frames).exp_m1();
-    let first = sums[0];
-    let points = || sums.iter().zip(1..).map(|(sum, n)| (sum / first - 1.0, shape(n) - shape(1) * sum / first));
+    // A frame alone is noisy.
+    let some = (waited / 4).clamp(1, sums.len());
+    let first = mean(&sums[..some]);
+    let of_first = (0..some).map(|n| shape(waited + n)).sum::<f64>() / some as f64;
+    let points = || sums.iter().zip(waited..).map(|(sum, n)| (sum / first - 1.0, shape(n) - of_first * sum / first));
     let [cross, square] = points().fold([0.0; 2], |[cross, square], (y, x)| [cross + x * y, square + x * x]);
     let strength = cross / square;
     (points().map(|(y, x)| (y - strength * x).powi(2)).sum(), frames, strength)
 }
 
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
 /// Standard deviation over the mean.
 fn spread(values: &[f64]) -> f64 {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt() / mean
+    let middle = mean(values);
+    (values.iter().map(|value| (value - middle).powi(2)).sum::<f64>() / values.len() as f64).sqrt() / middle
 }
 
 #[cfg(test)]
@@ -155,55 +233,118 @@ mod tests {
 
     /// What a taxel with this creep reads of a load.
     fn readings(creep: &Creep, load: &[f64]) -> Vec<f64> {
-        let mut added = 0.0;
-        load.iter()
-            .map(|load| {
-                let read = load + added;
-                added += creep.share() * (creep.strength * load - added);
-                read
-            })
-            .collect()
+        let mut past = Vec::new();
+        let mut read = |load: &f64| {
+            let mut frame = [*load];
+            creep.add(&mut past, &mut frame);
+            frame[0]
+        };
+        load.iter().map(&mut read).collect()
     }
 
-    fn step(frames: usize) -> Vec<f64> {
-        (0..frames).map(|n| if n < 9 { 0.0 } else { -700.0 }).collect()
+    /// So many frames, from the tenth second on under a load that is put down within so many frames.
+    fn step(frames: usize, ramp: usize) -> Vec<f64> {
+        let load = |n: usize| if n < 200 { 0.0 } else { -700.0 * ((n - 199) as f64 / ramp as f64).min(1.0) };
+        (0..frames).map(load).collect()
+    }
+
+    #[test]
+    fn a_step_creeps_exponentially() {
+        for frames in [2.0, 200.0] {
+            let creep = Creep { strength: 0.4, seconds: frames / 20.0, frames_per_second: 20.0 };
+            let read = readings(&creep, &[-700.0; 300]);
+            for (n, read) in read.iter().enumerate() {
+                let expected = -700.0 * (1.0 + 0.4 * (1.0 - f64::exp(-(n as f64) / frames)));
+                assert!((read - expected).abs() < 1e-9, "{frames}, {n}: {read} {expected}");
+            }
+        }
     }
 
     #[test]
     fn what_creeps_is_corrected_whatever_the_load() {
         let load: Vec<f64> = (0..900).map(|n| if n % 170 < 60 { -900.0 } else { 20.0 }).collect();
-        let mut past = Vec::new();
+        let mut past = vec![5.0; 3];
         for (load, read) in load.iter().zip(readings(&CREEP, &load)) {
             let mut frame = [read];
             CREEP.remove(&mut past, &mut frame, 1e4);
             assert!((frame[0] - load).abs() < 1e-9, "{} {load}", frame[0]);
         }
+        let mut frame = [-700.0];
+        CREEP.remove(&mut past, &mut frame, 100.0);
+        assert_eq!(frame[0].to_bits(), (-100.0_f64).to_bits(), "within the bound");
     }
 
+    /// However the weight is put down, whatever is read without it, with noise.
     #[test]
     fn a_step_of_load_tells_strength_and_time() {
-        let found = fit(&readings(&CREEP, &step(800)), 0.05).unwrap();
-        assert!((found.creep.strength - 0.4).abs() < 0.01, "{found:?}");
-        assert!((found.creep.seconds - 10.0).abs() < 0.3, "{found:?}");
-        assert!((found.creep.frames_per_second - 20.0).abs() < 1e-9, "{found:?}");
-        assert!(found.left < 0.01, "{found:?}");
+        for (ramp, level, noise) in
+            [(1, 0.0, 0.0), (2, 0.0, 0.0), (10, 0.0, 0.0), (20, 0.0, 0.0), (1, -80.0, 0.0), (1, 0.0, 2.0)]
+        {
+            let mut read = readings(&CREEP, &step(1500, ramp));
+            for (n, read) in read.iter_mut().enumerate() {
+                *read += level + noise * ((n * 7919 % 101) as f64 / 50.0 - 1.0);
+            }
+            let found = fit(&read, 0.05).unwrap();
+            assert!((found.creep.strength - 0.4).abs() < 0.02, "{ramp} {level} {noise}: {found:?}");
+            assert!((found.creep.seconds - 10.0).abs() < 0.5, "{ramp} {level} {noise}: {found:?}");
+            assert!((found.creep.frames_per_second - 20.0).abs() < 1e-9, "{found:?}");
+            assert!(found.left < 0.01, "{found:?}");
+        }
     }
 
     #[test]
     fn a_recording_that_does_not_tell_is_refused() {
-        let creep = readings(&CREEP, &step(800));
+        let creep = readings(&CREEP, &step(1500, 1));
+        let with = |strength: f64, seconds: f64| readings(&Creep { strength, seconds, ..CREEP }, &step(1500, 1));
+        // The weight is moved; it takes half a minute to come down.
+        let moved: Vec<f64> = creep.iter().enumerate().map(|(n, sum)| if n > 700 { 0.7 * sum } else { *sum }).collect();
         for (sums, said) in [
-            (creep[9..].to_vec(), "begin without load"),
-            (creep[..20].to_vec(), "begin without load"),
-            (creep[..80].to_vec(), "still rise after"),
-            (step(800), "no creep to correct"),
-            (Vec::new(), "begin without load"),
+            (creep[200..].to_vec(), "change before the load"),
+            (creep[..230].to_vec(), "of constant load"),
+            (creep[..270].to_vec(), "still rise after"),
+            (step(1500, 1), "no creep to correct"),
+            (step(1500, 1).iter().enumerate().map(|(n, sum)| sum * (1.0 - 1e-4 * n as f64)).collect(), "fall by"),
+            (with(3.0, 10.0), "can be corrected"),
+            (with(0.4, 0.5), "can be corrected"),
+            (moved, "the load moved"),
+            (Vec::new(), "0 frames without load"),
         ] {
             let refusal = fit(&sums, 0.05).unwrap_err();
+            assert!(refusal.contains(said), "{said}: {refusal}");
+        }
+    }
+
+    #[test]
+    fn frames_come_evenly_or_are_refused() {
+        assert!((interval(&[0.0, 0.1, 0.21, 0.3]).unwrap() - 0.1).abs() < 1e-9);
+        for (times, said) in [
+            (&[0.0, 0.1, 0.2, 10.3, 10.4][..], "after frame 3"),
+            (&[0.0, 0.1, 0.05, 0.2, 0.3], "after frame 2"),
+            (&[3.0, 2.0, 1.0], "do not rise"),
+            (&[0.0, f64::NAN, 0.2], "do not rise"),
+            (&[1.0], "do not rise"),
+        ] {
+            let refusal = interval(times).unwrap_err();
             assert!(refusal.contains(said), "{refusal}");
         }
-        // The weight is moved.
-        let moved: Vec<f64> = creep.iter().enumerate().map(|(n, sum)| if n > 500 { 0.7 * sum } else { *sum }).collect();
-        assert!(fit(&moved, 0.05).is_err());
+    }
+
+    /// Counts with offsets, of a load that comes and goes.
+    #[test]
+    fn a_recording_is_freed_of_creep() {
+        let text = "format = 3\nname = \"pad\"\n[algorithm]\nestimator = \"line\"\n[sensor]\ncolumns = 2\nrows = 2\n\
+                    pitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\npa_per_count = -2.0\ndead = [1]\n";
+        let design = Design::from_toml(text, "pad.toml").unwrap();
+        let loads: Vec<f64> = (0..400).map(|n| if n % 150 < 50 { 0.0 } else { 300.0 }).collect();
+        let read = readings(&CREEP, &loads);
+        let mut frames: Vec<Vec<f64>> = read.iter().map(|read| vec![40.0 + read, f64::NAN, 50.0 - read, 7.0]).collect();
+        CREEP.remove_from_recording(&design, &mut frames);
+        for (frame, load) in frames.iter().zip(loads) {
+            let expected = [40.0 + load, f64::NAN, 50.0 - load, 7.0];
+            for taxel in [0, 2, 3] {
+                assert!((frame[taxel] - expected[taxel]).abs() < 1e-9, "{frame:?} {expected:?}");
+            }
+            assert!(frame[1].is_nan(), "a dead taxel reads what it reads");
+        }
     }
 }

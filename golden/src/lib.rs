@@ -33,6 +33,7 @@ pub mod dead_taxels;
 pub mod design;
 pub mod estimators;
 pub mod filter;
+pub mod float;
 pub mod forces;
 pub mod frames;
 pub mod geometry;

@@ -1,4 +1,4 @@
-//! Largest magnitudes and middles of values.
+//! Largest magnitudes, middles and roundings of values.
 
 use std::borrow::Borrow;
 
@@ -18,4 +18,11 @@ pub(crate) fn sorted(values: impl IntoIterator<Item: Borrow<f64>>) -> Vec<f64> {
 pub(crate) fn middle(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
     let sorted = sorted(values);
     sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// To so many significant digits.
+pub(crate) fn rounded(value: f64, digits: i32) -> f64 {
+    let digits = digits - 1 - value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
+    let scale = 10_f64.powi(digits.abs());
+    if digits >= 0 { (value * scale).round() / scale } else { (value / scale).round() * scale }
 }

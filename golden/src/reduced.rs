@@ -15,11 +15,11 @@ use nalgebra::{DMatrix, RowDVector};
 
 use crate::design::{Filter, MatrixFilter};
 use crate::filter::FilterError;
+use crate::float::Float;
 use crate::matrices::Matrices;
 use crate::names::MatrixName;
 pub use crate::names::ReducedName;
 use crate::parity::{CLASSES, FoldedMatrix, Quads};
-use crate::products::Float;
 use crate::sums::{ByPq, RESULTANTS};
 
 /// The four blocks of a matrix, sparse, row by row.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use golden::calibrate::recorded::{Recorded, fit_forces, fit_uniform, page, read_forces, read_pressures};
 use golden::check::check;
 use golden::choose::rebase_scenes;
-use golden::creep;
+use golden::creep::{self, Creep};
 use golden::design::{Design, Filter};
 use golden::frames::Frames;
 use golden::matrices::Matrices;
@@ -33,7 +33,8 @@ pub struct Recordings {
     /// Pressures measured with them (CSV or .npy), one line a frame.
     #[arg(long, value_name = "P.csv", requires = "uniform")]
     pressures: Option<PathBuf>,
-    /// Frames of a rest, then of a weight that is put on in one move and left, with a column of times: they tell creep.
+    /// Unloaded frames, then a weight that stays, with a column of times: measures creep. --labels and --columns are those of
+    /// all recordings.
     #[arg(long, value_name = "FRAMES.csv")]
     constant_load: Option<PathBuf>,
     #[command(flatten)]
@@ -75,6 +76,9 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
              --forces, --uniform and --pressures, or --constant-load"
             .into());
     }
+    if page_file.is_some() && frames.is_none() && uniform.is_none() {
+        return Err("--page shows loads and gains: give --frames and --forces, or --uniform and --pressures".into());
+    }
     let mut design = Design::load(path)?;
     let resolved = Resolved::anew(path, out)?;
     let inputs: Vec<&Path> =
@@ -91,20 +95,23 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
     if let Some(name) = name_of(out) {
         design.name = name;
     }
-    if design.input.creep.is_some() && (frames.is_some() || uniform.is_some()) {
-        return Err(format!(
-            "{}: sensor.creep: gains are fitted to readings as they come; remove the key, and find creep anew with \
-             --constant-load, in the same call or after it",
-            path.display()
-        )
-        .into());
-    }
     let progress = Progress::of("fitting");
+    // Gains are those of readings without creep.
+    let mut creep = design.input.creep.take();
+    let found_creep = constant_load.as_ref().map(|file| creep_of(file, layout, &design)).transpose()?;
+    creep = found_creep.map(|found| found.creep).or(creep);
     let mut results: [Option<Recorded>; 2] = [None, None];
     let mut findings = Vec::new();
     for (place, (file, measured)) in [(uniform, pressures), (frames, forces)].into_iter().enumerate() {
         let (Some(file), Some(measured)) = (file, measured) else { continue };
-        let Frames { frames, times, .. } = Recording { file, layout: layout.layout() }.read_all(&design)?;
+        let Frames { mut frames, times, .. } = Recording { file, layout: layout.layout() }.read_all(&design)?;
+        if let Some(creep) = &creep {
+            // The recording may have another rate than the frames to come.
+            let interval = times.as_deref().map(creep::interval).transpose();
+            let interval = interval.map_err(|problem| format!("{}: {problem}", file.display()))?;
+            let rate = interval.map_or(creep.frames_per_second, |interval| 1.0 / interval);
+            Creep { frames_per_second: rate, ..*creep }.remove_from_recording(&design, &mut frames);
+        }
         let table = if place == 0 { read_pressures(measured) } else { read_forces(measured) }?;
         let paired = times.map_or(Ok(table.clone()), |times| table.at(&times));
         let table = paired.map_err(|problem| format!("{}: {problem}", measured.display()))?;
@@ -117,10 +124,7 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
         design = found.design.clone();
         results[place] = Some(found);
     }
-    let found_creep = constant_load.as_ref().map(|file| creep_of(file, layout, &design)).transpose()?;
-    if let Some(found) = &found_creep {
-        design.input.creep = Some(found.creep);
-    }
+    design.input.creep = creep;
     drop(progress);
     warn(&findings);
     if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
@@ -170,16 +174,13 @@ fn creep_of(
     design: &Design,
 ) -> std::result::Result<creep::Fitted, Box<dyn std::error::Error>> {
     let Frames { frames, times, .. } = Recording { file, layout: layout.layout() }.read_all(design)?;
-    let seconds = times.as_deref().and_then(|times| Some((times.last()? - times.first()?) / (times.len() - 1) as f64));
-    let Some(seconds) = seconds.filter(|&seconds| seconds > 0.0) else {
-        return Err(format!(
-            "{}: no column of times: name one before the values in the header, `time (s)` or `t (ms)`",
-            file.display()
-        )
-        .into());
-    };
+    let of_file = |problem: String| format!("{}: {problem}", file.display());
+    let times = times.ok_or_else(|| {
+        of_file("no column of times: name one before the values in the header, `time (s)` or `t (ms)`".to_owned())
+    })?;
+    let seconds = creep::interval(&times).map_err(of_file)?;
     let sums: Vec<f64> = frames.iter().map(|frame| design.stress_of(frame).iter().sum()).collect();
-    Ok(creep::fit(&sums, seconds).map_err(|problem| format!("{}: {problem}", file.display()))?)
+    Ok(creep::fit(&sums, seconds).map_err(of_file)?)
 }
 
 fn text(report: &Report<'_>) -> String {
@@ -204,8 +205,8 @@ fn text(report: &Report<'_>) -> String {
             }
         }
     }
-    if let Some(creep::Fitted { creep, held, rise, left }) = &report.creep {
-        say!(text, "from constant load: the readings rise by {:.1} % in {held:.1} s", 100.0 * rise);
+    if let Some(creep::Fitted { creep, held_s, rise, left }) = &report.creep {
+        say!(text, "from constant load: the readings rise by {:.1} % in {held_s:.1} s", 100.0 * rise);
         say!(
             text,
             "  creep       strength {:.3}, time constant {:.2} s at {:.1} frames a second; corrected, readings vary by {:.1} %",

@@ -7,6 +7,7 @@ use super::{CalibrateError, Stage};
 use crate::design::{Design, ExpectedError, Input, StandardError};
 use crate::estimators::standard_error::Marks;
 use crate::metrics::Quantiles;
+use crate::numbers::rounded;
 use crate::scene::{Kind, normal};
 use crate::solver::{Solver, Status};
 
@@ -159,13 +160,6 @@ fn fit(frames: &[Frame]) -> StandardError {
         }
     }
     made(best.map(|number| rounded(number, DIGITS)))
-}
-
-/// To so many significant digits.
-fn rounded(value: f64, digits: i32) -> f64 {
-    let digits = digits - 1 - value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
-    let scale = 10_f64.powi(digits.abs());
-    if digits >= 0 { (value * scale).round() / scale } else { (value / scale).round() * scale }
 }
 
 #[cfg(test)]

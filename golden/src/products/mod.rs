@@ -6,7 +6,6 @@
 //! or many at a time; a generator of hardware brings integers.
 
 pub(crate) mod batch;
-mod float;
 mod interpreter;
 mod list;
 mod real;
@@ -15,7 +14,6 @@ mod step;
 mod stored;
 
 pub use crate::sums::{ByPq, RESULTANTS};
-pub use float::Float;
 pub use interpreter::{Arithmetic, Frame};
 pub use list::{Form, ProductList, Source};
 pub use real::{Engine, Real, RealFrame};

@@ -2,12 +2,12 @@
 
 use std::marker::PhantomData;
 
-use super::float::Float;
 use super::interpreter::Frame;
 use super::list::ProductList;
 use super::scalar::{Number, Scalar, put_moments};
 use super::step::{Step, Vector};
 use super::stored::{Quarters, Stored};
+use crate::float::Float;
 use crate::sums::ByPq;
 
 /// Products with stored matrices in floating point.

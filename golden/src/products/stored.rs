@@ -2,9 +2,9 @@
 
 use nalgebra_sparse::CsrMatrix;
 
-use super::float::Float;
 use super::list::Source;
 use crate::filter::FilteredMatrices;
+use crate::float::Float;
 use crate::matrices::Matrices;
 use crate::parity::{CLASSES, butterfly};
 use crate::reduced::{FoldedRows, ReducedMatrices, SumRows};

@@ -8,7 +8,7 @@ mod field;
 mod green;
 mod kind;
 mod parse;
-mod parse_traction;
+mod parse_contact;
 mod sensor_errors;
 mod shape;
 mod spectral;

@@ -2,8 +2,8 @@
 
 use serde::Deserialize;
 
-use super::parse_traction::traction;
-use super::{Contact, Converter, Medium, Scene, SensorErrors, Shape};
+use super::parse_contact::{RawContact, angle_in_range, contact};
+use super::{Converter, Medium, Scene, SensorErrors};
 use crate::design::checks::Check;
 use crate::design::{DEFAULT_FULL_SCALE_PA, DesignError, Sensor, Tension, syntax_position};
 
@@ -46,34 +46,6 @@ struct RawMedium {
 enum MediumKind {
     BondedLayer,
     HalfSpace,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum ShapeKind {
-    Hertz,
-    Rectangle,
-    Disc,
-    Punch,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RawContact {
-    shape: String,
-    semi_axes_mm: Option<Vec<f64>>,
-    sides_mm: Option<Vec<f64>>,
-    radius_mm: Option<f64>,
-    centre_mm: Vec<f64>,
-    normal_force_n: f64,
-    friction: f64,
-    direction_deg: Option<f64>,
-    pub(super) turn_deg: Option<f64>,
-    pub(super) edge: Option<f64>,
-    pub(super) tilt: Option<Vec<f64>>,
-    pub(super) shear: Option<String>,
-    pub(super) held: Option<f64>,
-    pub(super) spin: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -160,71 +132,6 @@ fn medium(check: &Check, raw: &RawMedium) -> Result<Medium, DesignError> {
     }
 }
 
-fn contact(
-    check: &Check,
-    raw: &RawContact,
-    key: &impl Fn(&str) -> String,
-    swept: bool,
-) -> Result<Contact, DesignError> {
-    let shape = shape(check, raw, key)?;
-    let direction_deg = match (swept, raw.direction_deg) {
-        (_, Some(angle)) => angle_in_range(check, &key("direction_deg"), angle)?,
-        (true, None) => 0.0,
-        (false, None) => {
-            return Err(check.value(
-                &key("direction_deg"),
-                "is missing".to_owned(),
-                "write the direction of the tangential force, or add a [sweep]".to_owned(),
-            ));
-        }
-    };
-    let traction = traction(check, raw, shape, key)?;
-    let [x, y] = check.pair(&key("centre_mm"), &raw.centre_mm)?;
-    let centre = |name: &str, mm: f64| check.real(&key(name), mm, -100_000.0, 100_000.0, "mm").map(|mm| mm * 1e-3);
-    Ok(Contact {
-        shape,
-        centre_m: [centre("centre_mm[0]", x)?, centre("centre_mm[1]", y)?],
-        normal_force_n: check.above_zero(&key("normal_force_n"), raw.normal_force_n, 1e6, "N (it presses)")?,
-        friction: check.real(&key("friction"), raw.friction, 0.0, 10.0, "")?,
-        traction,
-        direction_deg,
-    })
-}
-
-fn shape(check: &Check, raw: &RawContact, key: &impl Fn(&str) -> String) -> Result<Shape, DesignError> {
-    let shape = check.word(&key("shape"), &raw.shape)?;
-    let (wanted, example) = match shape {
-        ShapeKind::Hertz => ("semi_axes_mm", "both semi-axes of the ellipse, such as [7.0, 7.0]"),
-        ShapeKind::Rectangle => ("sides_mm", "the lengths of both sides, such as [10.0, 6.0]"),
-        ShapeKind::Disc | ShapeKind::Punch => ("radius_mm", "the radius, such as 10.0"),
-    };
-    let given = [
-        ("semi_axes_mm", raw.semi_axes_mm.is_some()),
-        ("sides_mm", raw.sides_mm.is_some()),
-        ("radius_mm", raw.radius_mm.is_some()),
-    ];
-    if let Some((foreign, _)) = given.into_iter().find(|&(name, given)| given && name != wanted) {
-        return Err(check.value(
-            &key(foreign),
-            format!("does not belong to a contact of shape \"{}\"", raw.shape),
-            format!("remove it; the size of this shape is {wanted}"),
-        ));
-    }
-    let missing = || check.value(&key(wanted), "is missing".to_owned(), format!("write {example}"));
-    let metres = |name: &str, length: f64| check.real(&key(name), length, 0.01, 1000.0, "mm").map(|mm| mm * 1e-3);
-    let pair = |values: &Option<Vec<f64>>| {
-        let [x, y] = check.pair(&key(wanted), values.as_ref().ok_or_else(missing)?)?;
-        Ok([metres(&format!("{wanted}[0]"), x)?, metres(&format!("{wanted}[1]"), y)?])
-    };
-    let radius = || metres(wanted, raw.radius_mm.ok_or_else(missing)?);
-    Ok(match shape {
-        ShapeKind::Hertz => Shape::Hertz { semi_axes_m: pair(&raw.semi_axes_mm)? },
-        ShapeKind::Rectangle => Shape::Rectangle { sides_m: pair(&raw.sides_mm)? },
-        ShapeKind::Disc => Shape::Disc { radius_m: radius()? },
-        ShapeKind::Punch => Shape::Punch { radius_m: radius()? },
-    })
-}
-
 fn sensor_errors(check: &Check, raw: &RawSensorErrors, taxels: usize) -> Result<SensorErrors, DesignError> {
     let share = |name: &str, value: Option<f64>| {
         check.real(&format!("sensor_errors.{name}"), value.unwrap_or(0.0), 0.0, 1.0, "(a share: 0.002 is 0.2 %)")
@@ -278,10 +185,6 @@ fn sensor_errors(check: &Check, raw: &RawSensorErrors, taxels: usize) -> Result<
         stuck: saturated.into_iter().map(|taxel| (taxel, -full_scale_pa)).collect(),
         ..SensorErrors::default()
     })
-}
-
-fn angle_in_range(check: &Check, key: &str, angle: f64) -> Result<f64, DesignError> {
-    check.real(key, angle, -3600.0, 3600.0, "degrees")
 }
 
 fn range(check: &Check, raw: &RawRange) -> Result<Vec<f64>, DesignError> {

@@ -1,10 +1,11 @@
 //! Every pass over a list of products, alone: what the list computes stays the same.
 
+use golden::float::Float;
 use golden::kernel::{self, Kernel};
 use golden::matrices::Matrices;
 use golden::names::{MatrixName, ReducedName};
 use golden::parity::{CLASSES, FoldedMatrix, Quads};
-use golden::products::{ByPq, Engine, Float, ProductList, Source, Stored, Vector};
+use golden::products::{ByPq, Engine, ProductList, Source, Stored, Vector};
 use golden::sensor::Sensor;
 use nalgebra::DMatrix;
 

@@ -1,4 +1,4 @@
-//! Averages over frames: what they follow, what restarts them, and the same in every way to solve many frames.
+//! Averages over frames, and creep: what they follow, what restarts them, and the same in every way to solve many frames.
 
 #![allow(clippy::float_cmp)] // the same bits are meant
 
@@ -75,7 +75,8 @@ fn design(more: &str) -> Design {
 
 #[test]
 fn frames_are_averaged_alike_however_they_are_solved() {
-    let smooth = design("smoothing = 2\ndead = [3]\ncrosstalk = 0.01\n");
+    let creep = "creep = { strength = 0.3, seconds = 0.2, frames_per_second = 100.0 }\n";
+    let smooth = design(&format!("smoothing = 2\ndead = [3]\ncrosstalk = 0.01\n{creep}"));
     let plain = design("dead = [3]\ncrosstalk = 0.01\n");
     let [solver, without] = [&smooth, &plain].map(|design| Solver::new(design).unwrap());
     let mut random = ChaCha8Rng::seed_from_u64(3);
@@ -94,20 +95,24 @@ fn frames_are_averaged_alike_however_they_are_solved() {
         frames.push(frame_of(usize::from(number % 40 >= 20)));
     }
     frames[9][0] = f64::NAN;
-    // By hand: averages of what is decoded, restarted where the contact changes.
+    // By hand: averages of what is decoded, without creep, restarted where the contact changes.
     let decoded: Vec<Vec<f64>> =
         frames.iter().map(|frame| (0..30).map(|taxel| smooth.input.to_pa(taxel, frame[taxel])).collect()).collect();
     let (mut expected, mut average): (Vec<Solution>, Vec<f64>) = (Vec::new(), Vec::new());
+    let mut crept = vec![0.0; 30];
     for (number, frame) in decoded.iter().enumerate() {
         if number == 9 {
             expected.push(without.solve(frame).unwrap());
             assert_eq!(expected[9].status, Status::NOT_FINITE);
             continue;
         }
+        let frame: Vec<f64> = frame.iter().zip(&crept).map(|(stress, crept)| stress - crept).collect();
+        let share = 1.0 - f64::exp(-1.0 / 20.0);
+        crept.iter_mut().zip(&frame).for_each(|(crept, stress)| *crept += share * (0.3 * stress - *crept));
         if number % 20 == 0 {
-            average.clone_from(frame);
+            average.clone_from(&frame);
         } else {
-            average.iter_mut().zip(frame).for_each(|(average, stress)| *average += (stress - *average) / 4.0);
+            average.iter_mut().zip(&frame).for_each(|(average, stress)| *average += (stress - *average) / 4.0);
         }
         expected.push(without.solve(&average).unwrap());
     }

@@ -11,6 +11,7 @@ use crate::plan::creep;
 use crate::plan::crosstalk;
 use crate::plan::curve::{self, CurvePlan, SEGMENT_BITS};
 use crate::plan::dead::{DeadPlan, WEIGHT_BITS};
+use crate::plan::factor::WITH_FRACTION;
 use crate::plan::format::address_bits;
 use crate::plan::gain::{GAIN_BITS, LARGEST_NUMBER};
 use crate::plan::memory::memory;
@@ -73,7 +74,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         None => parameters,
     };
     let parameters = match &plan.smoothing {
-        Some(of) => parameters.unsigned("SMOOTHING", smoothing::RESTART_BITS, of.restart()),
+        Some(of) => parameters.unsigned("SMOOTHING", WITH_FRACTION, of.restart.bits()),
         None => parameters,
     };
     let parameters = match &plan.calibration {

@@ -15,6 +15,7 @@ mod dealing;
 mod durations;
 pub mod energy;
 mod error;
+pub mod factor;
 pub mod filtered;
 pub mod format;
 pub mod gain;

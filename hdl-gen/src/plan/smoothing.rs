@@ -4,8 +4,8 @@ use golden::design::Design;
 use golden::smoothing::RESTART;
 use serde::Serialize;
 
-use super::format::{largest, pow2};
-use crate::cores::{LONG_BITS, SHORT_BITS};
+use super::factor::Factor;
+use crate::cores::LONG_BITS;
 
 /// Largest rate.
 pub const MOST_RATE: u32 = 8;
@@ -13,10 +13,6 @@ pub const MOST_RATE: u32 = 8;
 const FRACTION: u32 = 9;
 /// Added to each average: cut to the step of the stress, it is rounded.
 const HALF: i64 = 1 << (FRACTION - 1);
-/// Width of the factor, which is not negative: the shorter operand of a multiplier.
-const FACTOR_BITS: u32 = SHORT_BITS - 1;
-/// Bits of [`SmoothingPlan::restart`].
-pub const RESTART_BITS: u32 = 6 + FACTOR_BITS;
 /// Bits that the memory keeps of a taxel: its stress, its average.
 pub const WORD_BITS: u32 = LONG_BITS + LONG_BITS + FRACTION;
 
@@ -25,10 +21,8 @@ pub const WORD_BITS: u32 = LONG_BITS + LONG_BITS + FRACTION;
 pub struct SmoothingPlan {
     /// The weight of a frame is `2^-rate`, unless a register says otherwise.
     pub rate: u32,
-    /// A step beyond `floor(factor * largest stress / 2^fraction)` restarts the average.
-    pub factor: i64,
-    /// Fraction bits of the factor.
-    pub fraction: u32,
+    /// A step beyond so many times the largest stress, cut to whole steps, restarts the average.
+    pub restart: Factor,
 }
 
 /// The average of the frames so far, or none before the first.
@@ -39,15 +33,7 @@ impl SmoothingPlan {
     /// That of a design, if it averages frames.
     pub fn new(design: &Design) -> Option<Self> {
         let input = &design.input;
-        let at = |fraction: u32| (RESTART * input.noise * pow2(fraction as i32)).round() as i64;
-        let fits = |&fraction: &u32| at(fraction) <= largest(SHORT_BITS);
-        let fraction = (1..=40).rev().find(fits)?;
-        (input.smoothing > 0).then(|| Self { rate: input.smoothing, factor: at(fraction), fraction })
-    }
-
-    /// When the average is restarted, as the hardware has it: the fraction bits above the factor.
-    pub fn restart(&self) -> u64 {
-        (u64::from(self.fraction) << FACTOR_BITS) | self.factor.unsigned_abs()
+        (input.smoothing > 0).then(|| Self { rate: input.smoothing, restart: Factor::new(RESTART * input.noise) })
     }
 
     /// Takes a good frame into the average, with the weight `2^-rate`, and puts the average in its place. Steps of `replaced`
@@ -55,7 +41,7 @@ impl SmoothingPlan {
     pub fn take(&self, rate: u32, average: &mut Average, stress: &mut [i64], replaced: &[usize]) {
         let Average(average) = average;
         let most = stress.iter().fold(0, |most, stress| most.max(stress.abs()));
-        let limit = (self.factor * most) >> self.fraction;
+        let limit = self.restart.times(most);
         let exact = |stress: i64| (stress << FRACTION) + HALF;
         let is_far = |(taxel, (average, stress)): (usize, (&i64, &i64))| {
             let step = (exact(*stress) - average) >> FRACTION;
@@ -77,7 +63,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::cores::LONG_BITS;
+    use crate::plan::format::largest;
 
     const TAXELS: usize = 4;
 
