@@ -12,8 +12,10 @@ use crate::numbers::{magnitude, middle, rounded};
 pub const FRAMES: [f64; 2] = [2.0, 131_072.0];
 /// Time constants that a fit tries, a ratio apart.
 const TRIED: i32 = 1000;
-/// Seconds in which the weight is put down. What creeps sooner belongs to the load.
+/// Seconds in which the weight is put down, at most.
 const SETTLES: f64 = 1.0;
+/// It lies when the readings rise by less than a tenth within so many seconds, and half of these have passed.
+const WINDOW: f64 = 0.2;
 /// Behind them a constant load has at least so many frames.
 const FEWEST: usize = 20;
 /// Without load readings change by less than this share of the load.
@@ -54,7 +56,7 @@ impl Creep {
     /// Takes creep off a good frame of stresses, within `bound`, and lets it go on; `creep` is empty before the first frame, or
     /// has the length of another sensor's.
     pub fn remove(&self, creep: &mut Vec<f64>, frame: &mut [f64], bound: f64) {
-        for (creep, stress) in self.of(creep, frame) {
+        for (creep, stress) in taxels(creep, frame) {
             *stress = (*stress - *creep).clamp(-bound, bound);
             *creep += self.share() * (self.strength * *stress - *creep);
         }
@@ -62,22 +64,11 @@ impl Creep {
 
     /// Adds creep to a frame of true stresses, as a sensor does, and lets it go on.
     pub fn add(&self, creep: &mut Vec<f64>, frame: &mut [f64]) {
-        for (creep, stress) in self.of(creep, frame) {
+        for (creep, stress) in taxels(creep, frame) {
             let before = *creep;
             *creep += self.share() * (self.strength * *stress - *creep);
             *stress += before;
         }
-    }
-
-    fn of<'a>(
-        &self,
-        creep: &'a mut Vec<f64>,
-        frame: &'a mut [f64],
-    ) -> impl Iterator<Item = (&'a mut f64, &'a mut f64)> {
-        if creep.len() != frame.len() {
-            *creep = vec![0.0; frame.len()];
-        }
-        creep.iter_mut().zip(frame)
     }
 
     /// Takes creep off the values of a recording, so that they are those of a design without it. What the first frame reads
@@ -95,6 +86,14 @@ impl Creep {
             }
         }
     }
+}
+
+/// The creep of each taxel beside its stress: none where there was no frame before, or another sensor's.
+fn taxels<'a>(creep: &'a mut Vec<f64>, frame: &'a mut [f64]) -> impl Iterator<Item = (&'a mut f64, &'a mut f64)> {
+    if creep.len() != frame.len() {
+        *creep = vec![0.0; frame.len()];
+    }
+    creep.iter_mut().zip(frame)
 }
 
 /// Creep found in a recording.
@@ -145,7 +144,10 @@ pub fn fit(sums: &[f64], seconds: f64) -> Result<Fitted, String> {
     // The weight's way down is neither unloaded nor constant.
     let unloaded = &sums[..begin.div_ceil(2)];
     let level = mean(unloaded);
-    let settled = begin + (SETTLES / seconds).ceil() as usize;
+    let [window, margin, most] = [WINDOW, 0.5 * WINDOW, SETTLES].map(|time| (time / seconds).ceil() as usize);
+    let steady = |pair: &[f64]| (pair[window] - level).abs() < 1.1 * (pair[0] - level).abs();
+    let steady_from = sums[begin..end].windows(window + 1).position(steady).unwrap_or(most);
+    let settled = begin + (steady_from + margin).min(most);
     let held: Vec<f64> = sums[settled.min(end)..end].iter().map(|sum| (sum - level).abs()).collect();
     if begin == 0 || held.len() < FEWEST {
         return Err(format!(
@@ -206,7 +208,7 @@ pub fn fit(sums: &[f64], seconds: f64) -> Result<Fitted, String> {
 fn strength(sums: &[f64], waited: usize, frames: f64) -> (f64, f64, f64) {
     let shape = |n: usize| -(-(n as f64) / frames).exp_m1();
     // A frame alone is noisy.
-    let some = (waited / 4).clamp(1, sums.len());
+    let some = waited.clamp(1, sums.len());
     let first = mean(&sums[..some]);
     let of_first = (0..some).map(|n| shape(waited + n)).sum::<f64>() / some as f64;
     let points = || sums.iter().zip(waited..).map(|(sum, n)| (sum / first - 1.0, shape(n) - of_first * sum / first));
@@ -300,12 +302,12 @@ mod tests {
         let moved: Vec<f64> = creep.iter().enumerate().map(|(n, sum)| if n > 700 { 0.7 * sum } else { *sum }).collect();
         for (sums, said) in [
             (creep[200..].to_vec(), "change before the load"),
-            (creep[..230].to_vec(), "of constant load"),
+            (creep[..220].to_vec(), "of constant load"),
             (creep[..270].to_vec(), "still rise after"),
             (step(1500, 1), "no creep to correct"),
             (step(1500, 1).iter().enumerate().map(|(n, sum)| sum * (1.0 - 1e-4 * n as f64)).collect(), "fall by"),
             (with(3.0, 10.0), "can be corrected"),
-            (with(0.4, 0.5), "can be corrected"),
+            (with(0.4, 0.1), "can be corrected"),
             (moved, "the load moved"),
             (Vec::new(), "0 frames without load"),
         ] {

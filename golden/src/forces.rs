@@ -239,9 +239,13 @@ pub fn read_contacts(
     Ok(rows.iter().map(contacts).collect())
 }
 
+fn unquoted(name: &str) -> &str {
+    name.trim().trim_matches('"')
+}
+
 /// Whether a column has this of a contact, such as `_F_z`.
 fn is_contact_column(name: &str, of: &str) -> bool {
-    name.trim().strip_prefix(CONTACT).and_then(|rest| rest.strip_suffix(of)).is_some()
+    unquoted(name).strip_prefix(CONTACT).and_then(|rest| rest.strip_suffix(of)).is_some()
 }
 
 /// The contact of a record's columns.
@@ -261,7 +265,7 @@ fn contact(&[taxels, status, x, y, fx, fy, fz, mu, standard_error]: &[f64; 9]) -
 /// The lines of a force file, each long enough.
 fn read_rows(path: &Path, frames: usize) -> Result<Vec<Vec<f64>>, FrameError> {
     let header = frames::first_line(path)?.unwrap_or_default();
-    if header.split([',', ';', '\t', ' ']).any(|name| name.trim().starts_with("body0_")) {
+    if header.split([',', ';', '\t', ' ']).any(|name| unquoted(name).starts_with("body0_")) {
         return Err(FrameError::Format {
             path: path.to_path_buf(),
             what: "a force file of an older version, whose columns body0_taxels, body0_status … number contacts from 0",

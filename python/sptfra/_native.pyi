@@ -143,7 +143,8 @@ class Solver:
         Frames are numbers of shape (n, rows, columns) or (n, taxels); (rows, columns) and (taxels,) are one frame. In Pa,
         compression negative, or in counts if the design counts. For designs with a limit of
         slip, `slips` are the forces of the frame before them, or whether that one slipped, with all contacts in it.
-        With smoothing, `average` is that of the frames before them, and then of these; without it these begin a stream.
+        With smoothing or creep, `past` is what the frames before have left, and then these; without it these begin a
+        stream.
         """
 
 @final

@@ -185,9 +185,7 @@ pub fn scene<'py>(
             (scene.sensor.clone(), scene.frames()?)
         };
         if let Some(design) = design {
-            for frame in &mut frames {
-                design.deliver(&mut frame.stress);
-            }
+            design.deliver_in_order(frames.iter_mut().map(|frame| &mut frame.stress));
         }
         Ok::<_, ChoiceError>((sensor, frames))
     })?;

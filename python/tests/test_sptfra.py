@@ -115,6 +115,16 @@ class Solving(unittest.TestCase):
             short = self.solver.solve(self.frames[:35])
             sptfra.errors(forces, short)
 
+    def test_frames_follow_those_of_another_call(self):
+        follows = design("smoothing = 2\ncreep = { strength = 0.3, seconds = 0.1, frames_per_second = 100.0 }\n")
+        solver, frames = sptfra.Solver(follows), np.repeat(sptfra.scene(follows).frames[:2], 10, axis=0)
+        at_once = solver.solve(frames).resultant
+        past = sptfra.Past()
+        parts = [solver.solve(part, past=past).resultant for part in (frames[:7], frames[7:8], frames[8:])]
+        np.testing.assert_allclose(np.concatenate(parts), at_once, atol=1e-12)
+        alone = solver.solve(frames[8:]).resultant
+        self.assertGreater(np.abs(alone - at_once[8:]).max(), 0.01)
+
     def test_each_name_has_a_unit(self):
         forces = sptfra.Solver(design()).solve(sptfra.scene(design()).frames)
         arrays = {field.name for field in dataclasses.fields(forces)} - {"records"} | {"mu", "phi"}

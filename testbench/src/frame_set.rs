@@ -59,9 +59,7 @@ impl FrameSet {
     /// The same frames as the design's sensor delivers them: in counts, whole ones, if it counts.
     #[must_use]
     pub fn as_delivered(mut self, design: &Design) -> Self {
-        for frame in &mut self.stress {
-            design.deliver(frame);
-        }
+        design.deliver_in_order(&mut self.stress);
         self
     }
 

@@ -362,7 +362,7 @@ mod tests {
         for frame in 0..500 {
             let stress = if frame % 170 < 60 { -900.0 } else { 20.0 };
             let [read, _, _, without_creep, _] = channel.corrected(stress);
-            assert!((without_creep - stress).abs() < 2.0, "{frame}: {without_creep}");
+            assert!((without_creep - stress).abs() < 0.3, "{frame}: {without_creep}");
             assert!(frame == 0 || (read - stress).abs() > 0.5, "{frame}: {read}");
             channel.load(stress);
         }

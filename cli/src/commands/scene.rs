@@ -150,9 +150,7 @@ pub fn run(args: &Args) -> message::Result {
     }
     let mut stresses: Vec<Vec<f64>> = made.into_iter().map(|frame| frame.stress).collect();
     if let Some(design) = &design {
-        for frame in &mut stresses {
-            design.deliver(frame);
-        }
+        design.deliver_in_order(&mut stresses);
     }
     if to_a_pipe {
         return Ok((geometry::remark(&sensor) + &frames::to_text(&stresses)).into());

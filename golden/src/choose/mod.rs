@@ -148,7 +148,7 @@ fn candidate_filters(taxels: usize) -> Vec<MatrixFilter> {
 /// # Errors
 ///
 /// [`ChooseError::Matrices`] for a sensor whose matrices are singular, [`ChooseError::Frames`] for frames of another
-/// sensor.
+/// sensor, [`ChooseError::Filter`] for a candidate that leaves a row without entries.
 pub fn choose(design: &Design, frames: &[SceneFrame], tick: &(dyn Fn() + Sync)) -> Result<Choice, ChooseError> {
     // Scenes are in pascals, whatever the sensor counts.
     let design = &Design { input: Input::default(), ..design.clone() };

@@ -3,7 +3,7 @@
 /// The labels of a grid's taxels, to be used again for the next frame.
 #[derive(Clone, Debug, Default)]
 pub struct Labels {
-    /// Blob of each taxel, from 0 in the order of their first taxels; `None` where nothing touches.
+    /// Contact of each taxel, from 0 in the order of their first taxels; `None` where nothing touches.
     pub components: Vec<Option<usize>>,
     /// Number of components.
     pub count: usize,

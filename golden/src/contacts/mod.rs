@@ -103,11 +103,6 @@ impl Finder {
         Self { contacts, columns: sensor.columns, distances: Distances::of(sensor) }
     }
 
-    /// Most contacts that get a region.
-    pub fn contacts(&self) -> usize {
-        self.contacts
-    }
-
     /// Records of contacts in a solution: none where there is but one region, which is the frame.
     pub fn records(&self) -> usize {
         if self.contacts > 1 { self.contacts } else { 0 }

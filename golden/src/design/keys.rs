@@ -68,7 +68,7 @@ pub(super) struct SensorKeys {
     #[schemars(range(min = 0.0001, max = 0.1), extend("examples" = [0.02]))]
     pub crosstalk: Option<f64>,
     /// Creep: readings that rise under constant load. Each taxel's own past corrects it, by one strength and one time constant
-    /// for all, which `sptfra calibrate --constant-load` finds.
+    /// for all, which `sptfra calibrate --constant-load` finds. `seconds` times `frames_per_second` is 2 to 131,072.
     #[schemars(extend("examples" = [{ "strength" : 0.4, "seconds" : 10.0, "frames_per_second" : 100.0 }]))]
     pub creep: Option<Creep>,
     /// The k of an exponential moving average of each taxel over the frames, with the weight 2^-k. A step of any taxel by more

@@ -89,6 +89,20 @@ impl Design {
         }
     }
 
+    /// As [`Design::deliver`] for frames that follow each other, with creep.
+    pub fn deliver_in_order<'a>(&self, frames: impl IntoIterator<Item = &'a mut Vec<f64>>) {
+        let mut past = Vec::new();
+        for frame in frames {
+            if let Some(creep) = &self.input.creep {
+                for stress in frame.iter_mut() {
+                    *stress = self.input.tension.of(*stress);
+                }
+                creep.add(&mut past, frame);
+            }
+            self.deliver(frame);
+        }
+    }
+
     /// Values of a frame, not rounded, of taxels under these stresses in pascals. A dead taxel reads 0.
     pub fn read_stress(&self, frame: &mut [f64]) {
         if let Some(crosstalk) = self.crosstalk() {

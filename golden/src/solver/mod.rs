@@ -286,7 +286,8 @@ impl Solver {
         self.reader.taxels()
     }
 
-    /// Solves one frame of values in taxel order, stresses in pascals or the counts that the design's input says.
+    /// Solves one frame of values in taxel order, stresses in pascals or the counts that the design's input says. No frame is
+    /// before it: nothing has crept, and nothing is averaged.
     ///
     /// # Errors
     ///

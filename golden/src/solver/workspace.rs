@@ -80,10 +80,11 @@ impl Solver {
         }
     }
 
-    /// As [`Solver::solve`], into a solution that is there already: after the first frame no memory is asked for.
+    /// As [`Solver::solve`], into a solution that is there already: after the first frame no memory is asked for,
+    /// unless contacts are separated.
     ///
-    /// The workspace is that of this solver; that of another is replaced. Frames solved with one workspace follow each
-    /// other: whether a frame slips depends on the one before, as do creep and averages.
+    /// The workspace is that of this solver; that of another geometry or plan is replaced. Frames solved with one workspace
+    /// follow each other: whether a frame slips depends on the one before, as do creep and averages.
     ///
     /// # Errors
     ///

@@ -77,13 +77,15 @@ fn the_cheapest_candidate_of_each_matrix_is_chosen() {
         for candidate in of_matrix {
             assert_eq!(candidate.cost.to_bits(), (candidate.e_mu * candidate.nnz as f64).to_bits());
         }
-        let mut filters = [MatrixFilter::None; 13];
-        filters[chosen[0].matrix.index()] = chosen[0].filter;
-        let alone = Filter::F3 { scenes: Vec::new(), choices: Some(Box::new(Choices::new(filters))) };
-        let filtered = FilteredMatrices::new(&matrices, &alone).unwrap();
-        assert_eq!(filtered.nnz(chosen[0].matrix), chosen[0].nnz);
-        let e_mu = mean_error(&Solver::from_parts(&design, matrices.clone(), filtered), &frames).unwrap();
-        assert_eq!(e_mu.to_bits(), chosen[0].e_mu.to_bits());
+        for one in [chosen[0], &of_matrix[0], &of_matrix[17]] {
+            let mut filters = [MatrixFilter::None; 13];
+            filters[one.matrix.index()] = one.filter;
+            let alone = Filter::F3 { scenes: Vec::new(), choices: Some(Box::new(Choices::new(filters))) };
+            let filtered = FilteredMatrices::new(&matrices, &alone).unwrap();
+            assert_eq!(filtered.nnz(one.matrix), one.nnz);
+            let e_mu = mean_error(&Solver::from_parts(&design, matrices.clone(), filtered), &frames).unwrap();
+            assert_eq!(e_mu.to_bits(), one.e_mu.to_bits());
+        }
     }
 }
 

@@ -75,7 +75,7 @@ fn design(more: &str) -> Design {
 
 #[test]
 fn frames_are_averaged_alike_however_they_are_solved() {
-    let creep = "creep = { strength = 0.3, seconds = 0.2, frames_per_second = 100.0 }\n";
+    let creep = "creep = { strength = 0.1, seconds = 0.2, frames_per_second = 100.0 }\n";
     let smooth = design(&format!("smoothing = 2\ndead = [3]\ncrosstalk = 0.01\n{creep}"));
     let plain = design("dead = [3]\ncrosstalk = 0.01\n");
     let [solver, without] = [&smooth, &plain].map(|design| Solver::new(design).unwrap());
@@ -95,7 +95,7 @@ fn frames_are_averaged_alike_however_they_are_solved() {
         frames.push(frame_of(usize::from(number % 40 >= 20)));
     }
     frames[9][0] = f64::NAN;
-    // By hand: averages of what is decoded, without creep, restarted where the contact changes.
+    // By hand: averages of what is decoded, without creep, restarted where the contact changes. Creep is too slow to restart them.
     let decoded: Vec<Vec<f64>> =
         frames.iter().map(|frame| (0..30).map(|taxel| smooth.input.to_pa(taxel, frame[taxel])).collect()).collect();
     let (mut expected, mut average): (Vec<Solution>, Vec<f64>) = (Vec::new(), Vec::new());
@@ -108,7 +108,7 @@ fn frames_are_averaged_alike_however_they_are_solved() {
         }
         let frame: Vec<f64> = frame.iter().zip(&crept).map(|(stress, crept)| stress - crept).collect();
         let share = 1.0 - f64::exp(-1.0 / 20.0);
-        crept.iter_mut().zip(&frame).for_each(|(crept, stress)| *crept += share * (0.3 * stress - *crept));
+        crept.iter_mut().zip(&frame).for_each(|(crept, stress)| *crept += share * (0.1 * stress - *crept));
         if number % 20 == 0 {
             average.clone_from(&frame);
         } else {
@@ -117,10 +117,10 @@ fn frames_are_averaged_alike_however_they_are_solved() {
         expected.push(without.solve(&average).unwrap());
     }
     let close = |found: &[Solution]| {
-        for (found, expected) in found.iter().zip(&expected) {
+        for (n, (found, expected)) in found.iter().zip(&expected).enumerate() {
             assert_eq!(found.status, expected.status);
             let far = (0..3).map(|axis| (found.resultant[axis] - expected.resultant[axis]).abs()).fold(0.0, f64::max);
-            assert!(far < 1e-9, "{far}");
+            assert!(far < 1e-9, "{n}: {far}");
         }
     };
     close(&solver.solve_in_order(&frames).unwrap());

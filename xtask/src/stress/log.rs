@@ -104,8 +104,8 @@ impl<'a> Banks<'a> {
     /// It goes back or there is no such version, the frame began when another one acted already, or no frames are
     /// there that a tare can have made its bank of.
     pub fn follow(&mut self, exchange: &Exchange, model: &mut Model<'_>) -> Result<(), String> {
-        let Some(census) = exchange.words.get(COUNTERS) else { return Ok(()) };
-        let (packet, stated) = (exchange.packet, (census >> 8) as u8);
+        let Some(counters) = exchange.words.get(COUNTERS) else { return Ok(()) };
+        let (packet, stated) = (exchange.packet, (counters >> 8) as u8);
         let version = self.acts + usize::from(stated.wrapping_sub(self.acts as u8));
         let last = self.log.acting.len() - 1;
         if version > last {

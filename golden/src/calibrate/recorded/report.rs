@@ -271,7 +271,7 @@ fn spread(recorded: &mut Recorded, facts: &Facts<'_>) {
     let creep = middle(&creeps);
     if creep.abs() > 0.03 {
         recorded.remarks.push(format!(
-            "under a constant load the readings {} by {:.0} % (median of {} holds): the sensor creeps. The constants are right for the mean of a hold; --constant-load finds what corrects it",
+            "under a constant load the readings {} by {:.0} % (median of {} holds): the sensor creeps. The constants are right for the mean of a hold; with --constant-load they are for readings without creep",
             if creep > 0.0 { "rise" } else { "fall" }, 100.0 * creep.abs(), creeps.len()
         ));
     }

@@ -63,6 +63,13 @@ fn crosstalk_and_smoothing_in_their_ranges() {
     let noise = |keys: &str| Design::from_toml(&sensor(keys), "pad.toml").unwrap().input.noise.to_bits();
     assert_eq!(noise("noise = { deviation = 12.0, largest = 4000.0 }"), noise("noise = 0.003"));
     refused(&sensor("smoothing = 4\nnoise = 0"), &["sensor.smoothing", "sensor.noise is 0", "check --unloaded"]);
+    let creep = |strength: &str, seconds: &str| {
+        sensor(&format!("creep = {{ strength = {strength}, seconds = {seconds}, frames_per_second = 100.0 }}"))
+    };
+    refused(&creep("1.5", "10.0"), &["sensor.creep.strength", "is 1.5", "0.001 to 1"]);
+    refused(&creep("0.4", "0.01"), &["sensor.creep", "a time constant of 1 frames", "2 to 131072"]);
+    refused(&creep("0.4", "1400.0"), &["sensor.creep", "140000 frames", "every nth frame"]);
+    refused(&sensor("creep = { strength = 0.4, seconds = 10.0 }"), &["frames_per_second"]);
     let design = Design::from_toml(&sensor("crosstalk = 0.02\nsmoothing = 4"), "pad.toml").unwrap();
     assert_eq!(Design::from_toml(&design.to_toml(), "resolved").unwrap(), design);
 }
