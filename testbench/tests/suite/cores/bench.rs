@@ -158,7 +158,7 @@ pub fn play(runs: Vec<Run>) -> Result<Vec<Played>, Box<dyn Error>> {
     }
     let longest = runs.iter().map(|run| run.cycles.len()).max().unwrap_or(0);
     fs::write(folder.path().join("bench.v"), bench + "endmodule\n")?;
-    verilator(folder.path(), longest + 1);
+    verilator(folder.path(), longest + 1).expect("no check of a module fails");
     runs.into_iter()
         .map(|run| {
             let text = fs::read_to_string(folder.path().join(format!("{}.out", run.module)))?;

@@ -214,10 +214,7 @@ fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>, random: &mut ChaCha8
     if let Some((module, from, to)) = fault {
         write_broken(folder.path(), module, from, to);
     }
-    let said = verilator(folder.path(), longest + 1);
-    if !said.is_empty() {
-        return Err(said);
-    }
+    verilator(folder.path(), longest + 1)?;
     let counts = |case: &Case| {
         let text = fs::read_to_string(place(format!("{}.out", case.name))).expect("written");
         text.lines().map(|line| line.parse().map_err(|_| format!("{}: {line} contacts", case.name))).collect()
