@@ -3,7 +3,7 @@
 //
 // Tree of registers over a few numbers: their sum, or with LARGEST the largest of them, unsigned.
 //
-// Latency: the logarithm of their count, rounded up; of one number, none. The halves come a cycle before.
+// Latency: the logarithm of their count, rounded up; of one number, none. Halves of more come a cycle before.
 
 `default_nettype none
 
@@ -16,7 +16,7 @@ module sptfra_tree #(
 ) (
     input  wire clock,
     input  wire [WIDTH*COUNT-1:0] numbers,
-    output wire [2*WIDTH-1:0] halves,
+    output wire [2*WIDTH-1:0] halves, // results of either half of the numbers; of one number, 0 and that
     output wire [WIDTH-1:0] result
 );
 
