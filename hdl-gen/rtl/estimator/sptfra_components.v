@@ -21,8 +21,8 @@ module sptfra_components #(
     // Bits of |w|, and of a sum
     parameter DATA_BITS = 27,
     parameter SUM_BITS = 34,
-    // Derived
-    parameter LABEL_WIDTH = (COLUMNS > 4) ? $clog2((COLUMNS + 1) / 2) + 1 : 2
+    // Bits of a label: the row, odd or even, and half the column
+    parameter LABEL_WIDTH = 4
 ) (
     input  wire clock,
     input  wire clear, // a frame begins: no seed is above it

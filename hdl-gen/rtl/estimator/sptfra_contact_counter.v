@@ -154,9 +154,10 @@ module sptfra_contact_counter #(
     wire [3:0] found; // four cycles behind
 
     sptfra_components #(
-        .COLUMNS   (COLUMNS),
-        .DATA_BITS (DATA_BITS),
-        .SUM_BITS  (SUM_BITS)
+        .COLUMNS     (COLUMNS),
+        .DATA_BITS   (DATA_BITS),
+        .SUM_BITS    (SUM_BITS),
+        .LABEL_WIDTH (LABEL_WIDTH)
     ) components (
         .clock    (clock),
         .clear    (start),
