@@ -45,7 +45,7 @@ module sptfra_bz #(
     parameter [4:0] REPLACED_SHIFT = 5'd17,
     parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
         = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
-    // Crosstalk, creep: see sptfra_corrections. Smoothing: see sptfra_frame_writer
+    // Crosstalk, creep: see sptfra_frame_corrections. Smoothing: see sptfra_frame_writer
     parameter [59:0] CROSSTALK = 60'd0,
     parameter [45:0] CREEP = 46'd0,
     parameter [22:0] SMOOTHING = 23'd0,

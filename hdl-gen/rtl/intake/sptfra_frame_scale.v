@@ -23,7 +23,6 @@ module sptfra_frame_scale #(
     // Beats
     input  wire beat_valid,
     input  wire [27*SAMPLES*CANDIDATES-1:0] stresses, // candidate by candidate, the samples of each side by side
-    input  wire [SAMPLES-1:0] counted, // samples of the frame
     input  wire ends, // the frame ends, with its last beat or after it
     input  wire bad_length,
     input  wire averaged, // the frame is made of the last candidates: known with whole
@@ -92,7 +91,7 @@ module sptfra_frame_scale #(
                 assign magnitudes[27*sample +: 27] = magnitude;
 
                 always @(posedge clock) begin
-                    magnitude <= !counted[sample] ? 27'd0 : stress[26] ? -stress : stress;
+                    magnitude <= stress[26] ? -stress : stress;
                 end
             end
 

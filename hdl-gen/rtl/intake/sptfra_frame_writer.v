@@ -4,7 +4,7 @@
 // Frame writer of Bz: corrects and averages a frame, writes it to the lanes, scaled and folded, and streams it to CeAn.
 //
 // Beat to CeAn: as of sptfra_taxel_stream. Beat to write: 5 cycles, with SCALED see sptfra_frame_scale; with SMOOTHING
-// both wait for the frame's end, see sptfra_smoothing. All later by what sptfra_corrections takes.
+// both wait for the frame's end, see sptfra_smoothing. All later by what sptfra_frame_corrections takes.
 
 `default_nettype none
 
@@ -28,7 +28,7 @@ module sptfra_frame_writer #(
     parameter [4:0] REPLACED_SHIFT = 5'd17,
     parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
         = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
-    // Crosstalk, creep: see sptfra_corrections
+    // Crosstalk, creep: see sptfra_frame_corrections
     parameter [59:0] CROSSTALK = 60'd0,
     parameter [45:0] CREEP = 46'd0,
     // {fraction bits of the factor, factor} of a step that restarts the average, 0 without any: see sptfra_smoothing
@@ -86,10 +86,6 @@ module sptfra_frame_writer #(
     localparam BEATS = (TAXELS + SAMPLES - 1) / SAMPLES;
     localparam BEAT_WIDTH = (BEATS > 2) ? $clog2(BEATS) : 1;
     localparam COUNT_WIDTH = $clog2(BEATS + 1);
-    localparam REST = TAXELS - (BEATS - 1) * SAMPLES; // samples of the last beat
-    localparam [31:0] REST_MASK = (1 << REST) - 1;
-    localparam [31:0] LAST_BEAT_WIDE = BEATS - 1;
-    localparam [COUNT_WIDTH-1:0] LAST_BEAT = LAST_BEAT_WIDE[COUNT_WIDTH-1:0];
     localparam STRESS_BITS = (DATA_BITS < 27) ? DATA_BITS : 27;
 
     generate
@@ -106,7 +102,7 @@ module sptfra_frame_writer #(
     wire [27*SAMPLES-1:0] corrected;
     wire [SAMPLES-1:0] corrected_saturated, corrected_not_finite;
 
-    sptfra_corrections #(
+    sptfra_frame_corrections #(
         .COLUMNS           (COLUMNS),
         .ROWS              (ROWS),
         .SAMPLES           (SAMPLES),
@@ -238,13 +234,12 @@ module sptfra_frame_writer #(
     wire [26:0] magnitude = stress[26] ? -stress : stress;
     wire folded;
     reg flags_sent;
-    wire [SAMPLES-1:0] counted = (written == LAST_BEAT) ? REST_MASK[SAMPLES-1:0] : {SAMPLES{1'b1}};
     wire [31:0] written_wide = {{(32-COUNT_WIDTH){1'b0}}, written};
 
     assign over = folded && (frame_done || flags_sent); // the lanes have it all, and CeAn its flags
     assign busy = ended || corrections_busy || smoothing_busy;
-    assign frame_saturated = seen_saturated || (takes && ((saturated & counted) != {SAMPLES{1'b0}}));
-    assign frame_not_finite = seen_not_finite || (takes && ((not_finite & counted) != {SAMPLES{1'b0}}));
+    assign frame_saturated = seen_saturated || (takes && (saturated != {SAMPLES{1'b0}}));
+    assign frame_not_finite = seen_not_finite || (takes && (not_finite != {SAMPLES{1'b0}}));
     assign frame_bad_length = ends ? bad_length_now : bad_length;
     assign frame_replaced = replaced_before + ((stress_valid && word[WORD_BITS-1]) ? {3'd0, magnitude} : 30'd0);
 
@@ -288,7 +283,6 @@ module sptfra_frame_writer #(
                 .reset      (reset),
                 .beat_valid (takes),
                 .stresses   (stresses),
-                .counted    (counted),
                 .ends       (ends),
                 .bad_length (bad_length_now),
                 .averaged   (averaged),

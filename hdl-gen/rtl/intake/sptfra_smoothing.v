@@ -10,7 +10,7 @@
 `default_nettype none
 
 module sptfra_smoothing #(
-    // Of a frame, and of a beat: 1, 2, 4 or 8
+    // Of a frame, and of a beat: 1, 2, 4 or 8. What fills the last one is zero
     parameter TAXELS = 100,
     parameter SAMPLES = 1,
     // A step beyond FACTOR / 2^FRACTION of the frame's largest stress restarts the average
@@ -47,9 +47,6 @@ module sptfra_smoothing #(
     localparam PLACE_WIDTH = (BEATS > 2) ? $clog2(BEATS) : 1;
     localparam LEVELS = $clog2(SAMPLES); // of the trees that find the largest stress and step
     localparam SETTLES = 4 + LEVELS;
-    localparam [31:0] LAST_WIDE = BEATS - 1;
-    localparam REST = TAXELS - (BEATS - 1) * SAMPLES; // samples of the last beat
-    localparam [31:0] REST_MASK = (1 << REST) - 1;
 
     // ---- Of the frame
     reg [3:0] rate_held;
@@ -63,8 +60,6 @@ module sptfra_smoothing #(
     reg [SETTLES:1] ends;
     reg [4*FLAGS-1:0] flags; // of stages 1 to 4
     reg [4*PLACE_WIDTH-1:0] places;
-    wire place_last = (place == LAST_WIDE[PLACE_WIDTH-1:0]);
-    wire [SAMPLES-1:0] counted = place_last ? REST_MASK[SAMPLES-1:0] : {SAMPLES{1'b1}};
     wire [63*SAMPLES-1:0] kept_1; // stress and average
     wire [63*SAMPLES-1:0] kept_4;
 
@@ -119,7 +114,7 @@ module sptfra_smoothing #(
             assign out_averages[27*sample +: 27] = average_4[35:9];
 
             always @(posedge clock) begin
-                stress_1 <= counted[sample] ? in_stresses[27*sample +: 27] : 27'd0;
+                stress_1 <= in_stresses[27*sample +: 27];
                 stress_2 <= stress_1;
                 old_2 <= old_1;
                 step_2 <= $signed({stress_1[26], stress_1, 9'h100}) - old_1;
@@ -187,7 +182,7 @@ module sptfra_smoothing #(
         if (in_takes) begin
             place <= place + 1'b1;
         end
-        if (in_takes && ((in_flags[SAMPLES:1] & counted) != {SAMPLES{1'b0}})) begin
+        if (in_takes && (in_flags[SAMPLES:1] != {SAMPLES{1'b0}})) begin
             is_bad <= 1'b1;
         end
         if (in_ends) begin
@@ -237,7 +232,7 @@ module sptfra_smoothing #(
         end
     end
 
-    wire _unused = &{1'b0, LAST_WIDE, takes, magnitude_halves, step_halves};
+    wire _unused = &{1'b0, takes, magnitude_halves, step_halves};
 
 endmodule
 

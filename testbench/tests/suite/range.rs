@@ -95,7 +95,9 @@ fn frames_of_all_strengths_in_one_row_are_right() {
 fn a_wrong_range_is_noticed() {
     let faults = [
         ("sptfra_frame_scale", "(guessed > STRESS_BOUND)", "(guessed > STRESS_BOUND + 5000000)"),
-        ("sptfra_frame_scale", "!counted[sample] ? 27'd0 : ", ""),
+        ("sptfra_frame_corrections", "counted[sample] ? in_stresses", "1'b1 ? in_stresses"),
+        ("sptfra_frame_corrections", "in_saturated & counted", "in_saturated"),
+        ("sptfra_frame_corrections", "in_not_finite & counted", "in_not_finite"),
         ("sptfra_fold", "exact_4 <= octets_3 << exponent[2:0]", "exact_4 <= octets_3 << exponent[1:0]"),
         ("sptfra_fold", ".HALF  (DROPPED)", ".HALF  (0)"),
         ("sptfra_frame_context", ".take       (direction_take),", ".take       (take),"),

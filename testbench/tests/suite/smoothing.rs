@@ -318,11 +318,6 @@ fn faults_are_noticed() {
         ("takes[1+LEVELS] && (magnitude > most)", "takes[1] && (magnitude > most)"),
         ("rate_held <= rate;", "rate_held <= 4'd1;"),
         ("$signed({stress_1[26], stress_1, 9'h100}) - old_1", "$signed({stress_1[26], stress_1, 9'h000}) - old_1"),
-        (
-            "stress_1 <= counted[sample] ? in_stresses[27*sample +: 27] : 27'd0;",
-            "stress_1 <= in_stresses[27*sample +: 27];",
-        ),
-        ("((in_flags[SAMPLES:1] & counted) != ", "(in_flags[SAMPLES:1] != "),
     ];
     let of_creep = [
         ("if (good_ends) begin", "if (in_ends) begin"),

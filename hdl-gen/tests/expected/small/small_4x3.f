@@ -8,7 +8,6 @@ rtl/sptfra_check_latency.v
 rtl/sptfra_co.v
 rtl/sptfra_context_field.v
 rtl/sptfra_cordic.v
-rtl/sptfra_corrections.v
 rtl/sptfra_direction.v
 rtl/sptfra_divider.v
 rtl/sptfra_estimator_line.v
@@ -17,6 +16,7 @@ rtl/sptfra_fixed_to_float.v
 rtl/sptfra_float_to_fixed.v
 rtl/sptfra_fold.v
 rtl/sptfra_frame_context.v
+rtl/sptfra_frame_corrections.v
 rtl/sptfra_frame_gate.v
 rtl/sptfra_frame_memory.v
 rtl/sptfra_frame_writer.v

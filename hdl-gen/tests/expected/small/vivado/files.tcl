@@ -23,7 +23,6 @@ foreach file {
     sptfra_co.v
     sptfra_context_field.v
     sptfra_cordic.v
-    sptfra_corrections.v
     sptfra_direction.v
     sptfra_divider.v
     sptfra_estimator_line.v
@@ -32,6 +31,7 @@ foreach file {
     sptfra_float_to_fixed.v
     sptfra_fold.v
     sptfra_frame_context.v
+    sptfra_frame_corrections.v
     sptfra_frame_gate.v
     sptfra_frame_memory.v
     sptfra_frame_writer.v

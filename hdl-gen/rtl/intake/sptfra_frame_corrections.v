@@ -3,12 +3,12 @@
 //
 // Corrections of a frame: replaces its dead taxels, then removes crosstalk, then creep, where the design has them.
 //
-// Without any a beat passes in the same cycle. sptfra_replace and sptfra_crosstalk keep the frame until it is complete;
-// sptfra_creep takes 2 cycles.
+// What fills a frame's last beat becomes zeros without flags. Without corrections a beat passes in the same cycle.
+// sptfra_replace and sptfra_crosstalk keep the frame until it is complete; sptfra_creep takes 2 cycles.
 
 `default_nettype none
 
-module sptfra_corrections #(
+module sptfra_frame_corrections #(
     // Taxels in x and y, and of a beat: one where something is corrected
     parameter COLUMNS = 10,
     parameter ROWS = 10,
@@ -58,6 +58,37 @@ module sptfra_corrections #(
     output wire replaced // it took a dead taxel's place
 );
 
+    localparam BEATS = (TAXELS + SAMPLES - 1) / SAMPLES;
+    localparam BEAT_WIDTH = (BEATS > 2) ? $clog2(BEATS) : 1;
+    localparam REST = TAXELS - (BEATS - 1) * SAMPLES; // samples of the last beat
+    localparam [31:0] REST_MASK = (1 << REST) - 1;
+    localparam [31:0] LAST_BEAT = BEATS - 1;
+
+    // ---- Samples of the frame
+    reg [BEAT_WIDTH-1:0] beat;
+    wire last_beat = (beat == LAST_BEAT[BEAT_WIDTH-1:0]);
+    wire [SAMPLES-1:0] counted = last_beat ? REST_MASK[SAMPLES-1:0] : {SAMPLES{1'b1}};
+    wire [27*SAMPLES-1:0] own_stresses;
+    wire [SAMPLES-1:0] own_saturated = in_saturated & counted;
+    wire [SAMPLES-1:0] own_not_finite = in_not_finite & counted;
+    genvar sample;
+
+    generate
+        for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_samples
+            assign own_stresses[27*sample +: 27] = counted[sample] ? in_stresses[27*sample +: 27] : 27'd0;
+        end
+    endgenerate
+
+    always @(posedge clock) begin
+        if (in_takes) begin
+            beat <= beat + 1'b1;
+        end
+        if (reset || in_ends) begin
+            beat <= {BEAT_WIDTH{1'b0}};
+        end
+    end
+
+    // ---- What is corrected
     wire whole_takes, whole_ends, whole_bad_length, whole_replaced;
     wire [27*SAMPLES-1:0] whole_stresses;
     wire [SAMPLES-1:0] whole_saturated, whole_not_finite;
@@ -85,9 +116,9 @@ module sptfra_corrections #(
                 .in_takes       (in_takes),
                 .in_ends        (in_ends),
                 .in_bad_length  (in_bad_length),
-                .in_stress      (in_stresses[26:0]),
-                .in_saturated   (in_saturated[0]),
-                .in_not_finite  (in_not_finite[0]),
+                .in_stress      (own_stresses[26:0]),
+                .in_saturated   (own_saturated[0]),
+                .in_not_finite  (own_not_finite[0]),
                 .taxel_ahead    (taxel_ahead),
                 .map            (map),
                 .busy           (replace_busy),
@@ -102,7 +133,7 @@ module sptfra_corrections #(
         end else begin : gen_as_read
             assign {whole_takes, whole_ends, whole_bad_length, whole_replaced, replace_busy}
                 = {in_takes, in_ends, in_bad_length, 2'b00};
-            assign {whole_stresses, whole_saturated, whole_not_finite} = {in_stresses, in_saturated, in_not_finite};
+            assign {whole_stresses, whole_saturated, whole_not_finite} = {own_stresses, own_saturated, own_not_finite};
             wire _unused_map = &{1'b0, REPLACED_COUNT, REPLACED_SHIFT, REPLACED_TAXELS, MAPPED != 0, ROM_DIR != "",
                 ROM_NAME != "", taxel_ahead, map};
         end
@@ -163,7 +194,7 @@ module sptfra_corrections #(
             assign {stresses, saturated, not_finite} = {apart_stresses, apart_saturated, apart_not_finite};
         end
         if ((REPLACEABLE == 0) && ({CROSSTALK, CREEP} == 0)) begin : gen_nothing
-            wire _unused_nothing = &{1'b0, clock, reset, STRESS_BOUND};
+            wire _unused_nothing = &{1'b0, STRESS_BOUND};
         end
     endgenerate
 
