@@ -50,6 +50,14 @@ impl Separator {
         }
     }
 
+    /// A line without the white space around it. A tab that separates is none: a blank cell may stand at either end.
+    pub(crate) fn trim(self, line: &[u8]) -> &[u8] {
+        let Self::Byte(b'\t') = self else { return line.trim_ascii() };
+        let is_cell = |byte: &u8| *byte == b'\t' || !byte.is_ascii_whitespace();
+        let end = line.iter().rposition(is_cell).map_or(0, |last| last + 1);
+        &line[line.iter().position(is_cell).unwrap_or(end)..end]
+    }
+
     pub(crate) fn split(self, line: &[u8]) -> Vec<&[u8]> {
         match self {
             Self::Byte(separator) => {
@@ -64,10 +72,15 @@ impl Separator {
         }
     }
 
-    /// The fields of a line, of which the last one may end with the separator, too.
+    /// The fields of a line without the blank ones behind its last value.
     pub(crate) fn fields(self, line: &[u8]) -> Vec<&[u8]> {
+        self.at_most(1, line)
+    }
+
+    /// The fields of a line without the blank ones behind its last value, as long as there are more than `columns`.
+    pub(crate) fn at_most(self, columns: usize, line: &[u8]) -> Vec<&[u8]> {
         let mut fields = self.split(line);
-        if fields.len() > 1 && fields.last().is_some_and(|field| field.is_empty()) {
+        while fields.len() > columns && fields.last().is_some_and(|field| field.is_empty()) {
             fields.pop();
         }
         fields

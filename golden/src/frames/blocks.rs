@@ -32,8 +32,8 @@ pub(super) fn join(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
     let all: Vec<Line> = separator::lines(bytes)
         .enumerate()
         .skip(layout.skip_lines)
-        .map(|(index, line)| (index + 1, line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line).trim_ascii()))
-        .map(|(number, content)| Line { number, content, row: row(content) })
+        .map(|(index, line)| (index + 1, line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line)))
+        .map(|(number, line)| Line { number, content: line.trim_ascii(), row: row(line, columns) })
         .collect();
     let of_length =
         |length: usize| all.iter().filter(move |line| line.row.as_ref().is_some_and(|row| row.len() == length)).count();
@@ -82,8 +82,9 @@ pub(super) fn join(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
 }
 
 /// The fields of a line that has nothing but numbers and readings that are not there.
-fn row(content: &[u8]) -> Option<Vec<&[u8]>> {
-    let fields = Separator::of(content).fields(content);
+fn row(line: &[u8], columns: usize) -> Option<Vec<&[u8]>> {
+    let separator = Separator::of(line.trim_ascii());
+    let fields = separator.at_most(columns, separator.trim(line));
     let is_number = |field: &&[u8]| separator::number(field).is_some_and(f64::is_finite);
     let is_reading = |field: &&[u8]| separator::number(field).is_some() || is_unknown(&String::from_utf8_lossy(field));
     (fields.iter().all(is_reading) && fields.iter().any(is_number)).then_some(fields)

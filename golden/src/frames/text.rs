@@ -57,6 +57,8 @@ pub(super) struct Lines {
     /// Whether a comma is a decimal point for certain, and the first one of which that is not clear.
     decimal: bool,
     unclear: Option<(usize, usize, String)>,
+    /// Cells of a line that has blank ones behind its last value.
+    padded: Option<usize>,
     /// Lines that were left out, and what was wrong with the first.
     bad: Option<(usize, String)>,
     remarks: Vec<String>,
@@ -76,6 +78,7 @@ impl Lines {
             number: 0,
             decimal: false,
             unclear: None,
+            padded: None,
             bad: None,
             remarks: Vec::new(),
         }
@@ -96,7 +99,9 @@ impl Lines {
         let path = self.path.display();
         let bad =
             self.bad.as_ref().map(|(count, first)| format!("{path}: {count} lines are left out; the first: {first}"));
-        self.remarks.iter().cloned().chain(bad).collect()
+        let last = self.labels() + self.target.as_ref().map_or(0, |target| target.sensor.taxels());
+        let padded = self.padded.map(|_| format!("{path}: cells behind column {last} are blank, and are none"));
+        self.remarks.iter().cloned().chain(padded).chain(bad).collect()
     }
 
     /// Columns before the values.
@@ -141,6 +146,7 @@ impl Lines {
             return Ok(None);
         }
         let separator = self.separator.unwrap_or_else(|| Separator::of(content));
+        let content = separator.trim(line);
         let fields = separator.fields(content);
         if let Some(separator) = foreign(content) {
             return Err(FrameError::Separator { path: self.path.clone(), line: self.number, separator });
@@ -154,7 +160,7 @@ impl Lines {
         self.separator = Some(separator).filter(|separator| !is_header || matches!(separator, Separator::Byte(_)));
         if is_header {
             if self.state == State::Begin {
-                self.header = Some(content.to_vec());
+                self.header = Some(content.trim_ascii().to_vec());
                 self.names(&fields)?;
             }
             self.state = State::Header;
@@ -195,12 +201,16 @@ impl Lines {
     ) -> Result<Vec<f64>, FrameError> {
         let first = self.labels();
         let dead = self.target.as_ref().map_or(Vec::new(), |target| target.dead.clone());
-        let mut fields = separator.fields(content);
-        let right = |count: usize| count >= first && wrong_length(count - first).is_none();
-        // A blank at the end is the last taxel, if that is dead, and else nothing.
-        let all = separator.split(content);
-        if !right(fields.len()) && right(all.len()) && dead.contains(&(all.len() - first - 1)) {
-            fields = all;
+        // Blank cells behind the last column are nothing; a blank one in it is a value that is not there.
+        let cells = separator.split(content);
+        let columns = match (&self.target, self.layout.columns) {
+            (_, Some(_)) => cells.len(),
+            (Some(target), None) => first + target.sensor.taxels(),
+            (None, None) => 1,
+        };
+        let fields = separator.at_most(columns, content);
+        if self.target.is_some() && fields.len() == columns && cells.len() > columns {
+            self.padded = Some(cells.len());
         }
         let path = self.path.clone();
         let end = self.layout.columns.map_or(fields.len(), |[_, last]| last);
@@ -371,6 +381,15 @@ impl Lines {
         Ok(text)
     }
 
+    /// Refuses a column behind the values that is blank on some lines, and whose other lines were left out.
+    fn padding(&mut self, bytes: &[u8]) -> Result<(), FrameError> {
+        let (Some(cells), Some(_), Some(separator)) = (self.padded, &self.bad, self.separator) else { return Ok(()) };
+        let count = |line: &[u8]| separator.fields(separator.trim(line)).len();
+        let Some(full) = separator::lines(bytes).position(|line| count(line) == cells) else { return Ok(()) };
+        self.number = full + 1;
+        Err(self.wrong_length(cells, self.labels() + self.target.as_ref().map_or(0, |target| target.sensor.taxels())))
+    }
+
     /// What is still to be refused at the end: commas that may be either.
     pub(super) fn unclear(&self) -> Result<(), FrameError> {
         match &self.unclear {
@@ -428,7 +447,7 @@ pub(super) fn read(
     let mut labels: Vec<bool> = Vec::new();
     for line in separator::lines(bytes) {
         let Some(row) = lines.row(line, &wrong_length)? else { continue };
-        let fields = lines.separator.map(|separator| separator.split(line.trim_ascii())).unwrap_or_default();
+        let fields = lines.separator.map(|separator| separator.split(separator.trim(line))).unwrap_or_default();
         let label = |column: usize| fields.get(column).and_then(|label| separator::number(label));
         if let Some((column, unit)) = lines.time {
             text.times.get_or_insert_default().push(label(column).map_or(f64::NAN, |time| unit * time));
@@ -438,6 +457,7 @@ pub(super) fn read(
         text.lines.push(lines.number);
     }
     lines.unclear()?;
+    lines.padding(bytes)?;
     if let [first, others @ ..] = &text.rows[..] {
         // Its label is a word where all others are numbers.
         let is_labelled = || {

@@ -90,6 +90,44 @@ fn a_header_of_sensor_numbers_is_none_of_the_frames() {
     assert!(lines.frame(b"3,5,7,11,12,20\n").unwrap().is_some());
 }
 
+/// A tab beside a blank cell separates as a comma does.
+#[test]
+fn blank_cells_at_either_end_of_a_line() {
+    let skip = Layout { skip_bad: true, ..Layout::default() };
+    let columns = Layout { columns: Some([2, 7]), ..Layout::default() };
+    let good = Ok(vec![A.to_vec()]);
+    let a = "-7.5,-1,0,2,-3,5";
+    for (keys, text, layout, expected) in [
+        // The index of pandas, and a time that is not there.
+        ("", format!(",p0,p1,p2,p3,p4,p5\n0,{a}\n"), Layout::default(), good.clone()),
+        ("", format!("time,p0,p1,p2,p3,p4,p5,t1\n,{a},900\n"), Layout::default(), good.clone()),
+        ("", format!("x,{a},9,8\n,{a},9,8\n"), columns, Ok(vec![A.to_vec(); 2])),
+        ("", format!(",{a}\n"), 1.into(), good.clone()),
+        // Values that are not there.
+        ("", format!("{a}\n,-1,0,2,-3,5\n-7.5,-1,0,2,-3,\n"), skip.clone(), good.clone()),
+        ("", format!("p0,p1,p2,p3,p4,p5,sum\n{a},9\n,-1,0,2,-3,5,9\n"), skip.clone(), good.clone()),
+        ("", "-7.5,-1,0,2,-3,\n".to_owned(), Layout::default(), Err("line 1, column 6: \"\"")),
+        ("", ",-1,0,2,-3,5,9\n".to_owned(), Layout::default(), Err("line 1, column 1: \"\"")),
+        ("dead = [0, 5]", ",-1,0,2,-3,\n".to_owned(), 0.into(), Ok(vec![vec![0.0, -1.0, 0.0, 2.0, -3.0, 0.0]])),
+        ("dead = [0, 5]", "7,,-1,0,2,-3,\n".to_owned(), 1.into(), Ok(vec![vec![0.0, -1.0, 0.0, 2.0, -3.0, 0.0]])),
+        ("dead = [0, 5]", ",-1,0\n2,-3,\n".to_owned(), 0.into(), Ok(vec![vec![0.0, -1.0, 0.0, 2.0, -3.0, 0.0]])),
+        // Columns that are blank on each line are none; one that is so on some is the total.
+        ("", format!("{a},,\n{a},,\n"), Layout::default(), Ok(vec![A.to_vec(); 2])),
+        ("", format!("1,{a}\n2,-7.5,-1,0,2,-3,\n"), skip, Err("line 1: the line ends at column 7 where 6")),
+    ] {
+        for separator in [",", ";", "\t"] {
+            let text = text.replace(',', separator);
+            let found = read_bytes("frames.csv", text.as_bytes(), &pad(keys), layout.clone());
+            match (found, &expected) {
+                (Ok(found), Ok(frames)) => assert_eq!(found.frames, *frames, "{text:?}"),
+                (Err(said), Err(part)) => assert!(said.contains(part), "{said}"),
+                (found, _) => panic!("{text:?}: {found:?}"),
+            }
+        }
+    }
+    assert!(read("1\t2\t3\t4\t7\t5\t\t\n", 0).unwrap().remark.unwrap().contains("cells behind column 6 are blank"));
+}
+
 #[test]
 fn a_dead_taxel_may_read_anything() {
     let design = pad("dead = [5]");
