@@ -12,7 +12,7 @@ pub(crate) enum Separator {
     Spaces,
 }
 
-/// What the comma within a number is.
+/// What the commas, or the points, within a number are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Comma {
     /// A decimal point for certain.
@@ -24,8 +24,17 @@ pub(crate) enum Comma {
 impl Comma {
     /// The commas of a field; nothing if it has none.
     pub(crate) fn of(field: &[u8]) -> Option<Self> {
+        Self::marks(field, b',')
+    }
+
+    /// The points of a field; nothing if it has none.
+    pub(crate) fn of_points(field: &[u8]) -> Option<Self> {
+        Self::marks(field, b'.')
+    }
+
+    fn marks(field: &[u8], mark: u8) -> Option<Self> {
         let digits = field.strip_prefix(b"-").or(field.strip_prefix(b"+")).unwrap_or(field);
-        let mut groups = digits.split(|&byte| byte == b',');
+        let mut groups = digits.split(|&byte| byte == mark);
         let first = groups.next()?;
         let mut groups = groups.peekable();
         groups.peek()?;

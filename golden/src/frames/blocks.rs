@@ -7,7 +7,6 @@ use std::path::Path;
 
 use super::FrameError;
 use super::layout::{Layout, Target};
-use crate::calibrate::recorded::pressure_unit;
 use crate::separator::{self, Separator, is_unknown};
 
 /// A line of a file.
@@ -20,10 +19,10 @@ struct Line<'a> {
 
 /// Frames of a file, each on one line.
 pub(super) struct Blocks {
-    /// The first line of each, from 1, and its fields, separated by semicolons.
+    /// The first line of each, from 1, and its fields, separated by semicolons or tabs.
     pub(super) frames: Vec<(usize, Vec<u8>)>,
-    /// A unit of pressure that the header names, in pascals.
-    pub(super) unit: Option<(String, f64)>,
+    /// The unit that the header names.
+    pub(super) unit: Option<String>,
 }
 
 /// Puts the rows of each frame on one line; nothing if the file has a line for each frame, or lines of other lengths.
@@ -54,10 +53,13 @@ pub(super) fn join(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
             _ => Ok(None),
         };
     }
+    // Points between semicolons may separate thousands.
+    let separator: &[u8] =
+        if all.iter().any(|line| line.row.is_some() && line.content.contains(&b';')) { b";" } else { b"\t" };
     let (mut frames, mut block) = (Vec::new(), Vec::new());
     for Line { number, content, row } in &all {
         match row {
-            Some(row) if row.len() == columns => block.push(row.join(&b";"[..])),
+            Some(row) if row.len() == columns => block.push(row.join(separator)),
             _ if block.is_empty() || content.starts_with(b"#") => {}
             _ => {
                 let found = block.len();
@@ -71,7 +73,7 @@ pub(super) fn join(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
             }
         }
         if block.len() == rows {
-            frames.push((number + 1 - rows, std::mem::take(&mut block).join(&b";"[..])));
+            frames.push((number + 1 - rows, std::mem::take(&mut block).join(separator)));
         }
     }
     if !block.is_empty() {
@@ -90,14 +92,13 @@ fn row(line: &[u8], columns: usize) -> Option<Vec<&[u8]>> {
     (fields.iter().all(is_reading) && fields.iter().any(is_number)).then_some(fields)
 }
 
-/// The unit of pressure that a line of words above the frames names, and what it is worth in pascals.
-fn unit(lines: &[Line]) -> Option<(String, f64)> {
+/// The unit that a line of words above the frames names.
+fn unit(lines: &[Line]) -> Option<String> {
     let words = lines.iter().take_while(|line| line.row.as_ref().is_none_or(|row| row.len() < 2));
-    words
-        .map(|line| String::from_utf8_lossy(line.content))
-        .filter(|text| text.to_lowercase().contains("unit"))
-        .find_map(|text| {
-            let mut names = text.split(|c: char| !c.is_alphanumeric());
-            names.find_map(|name| Some((name.to_owned(), pressure_unit(&name.to_lowercase())?)))
-        })
+    words.map(|line| String::from_utf8_lossy(line.content)).find_map(|text| {
+        let mut words =
+            text.split([' ', '\t', ':', '=', ',', ';', '"', '(', ')', '[', ']']).filter(|word| !word.is_empty());
+        words.find(|word| matches!(word.to_lowercase().as_str(), "unit" | "units" | "einheit"))?;
+        words.next().map(|unit| unit.replace(char::is_control, ""))
+    })
 }

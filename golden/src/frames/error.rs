@@ -64,10 +64,11 @@ pub enum FrameError {
         /// What to do.
         remedy: String,
     },
-    /// Commas that are decimal points or separators of thousands.
+    /// Commas, or points between semicolons, that are decimal ones or separators of thousands.
     #[error(
-        "{}, line {line}, column {column}: \"{text}\" is a number with a decimal comma or one with separators of thousands, \
-         and three digits follow every comma of the file; write decimal points, or remove the separators", path.display()
+        "{}, line {line}, column {column}: \"{text}\" is a number with a decimal {mark} or one with separators of thousands, \
+         and three digits follow every {mark} of the file; {}, or remove the separators",
+        path.display(), if *mark == "comma" { "write decimal points" } else { "separate the values by commas" }
     )]
     Thousands {
         /// The file.
@@ -78,6 +79,8 @@ pub enum FrameError {
         column: usize,
         /// What is there.
         text: String,
+        /// "comma" or "point".
+        mark: &'static str,
     },
     /// Lines or columns that do not fit the sensor.
     #[error("{}, line {line}: {problem}", path.display())]

@@ -8,11 +8,13 @@
 mod blocks;
 mod error;
 mod format;
+mod header;
 mod layout;
 mod npy;
 mod stream;
 mod text;
 
+pub(crate) use header::seconds;
 pub(crate) use npy::Array;
 
 use std::fmt::Write;
@@ -23,7 +25,6 @@ pub use layout::Layout;
 use layout::Target;
 pub use stream::{FrameLines, FrameStream};
 use text::Text;
-pub(crate) use text::seconds;
 
 use crate::design::Design;
 use crate::output;
@@ -69,7 +70,7 @@ fn read_text(path: &Path, layout: &Layout, target: &Target) -> Result<Text, Fram
 ///
 /// As [`read_frames`].
 pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -> Result<Frames, FrameError> {
-    let Text { rows: frames, lines, labels, times, remarks } = read_text(path, &layout.into(), &design.into())?;
+    let Text { rows: frames, lines, labels, order, times, remarks } = read_text(path, &layout.into(), &design.into())?;
     let samples = design.hardware.samples;
     let wrong = |values: &Vec<f64>| values.iter().position(|&value| !samples.takes(value));
     let found = frames.iter().enumerate().find_map(|(frame, values)| Some((frame, wrong(values)?)));
@@ -80,7 +81,7 @@ pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -
         return Ok(Frames { frames, times, remark });
     };
     let place = match lines.get(frame) {
-        Some(line) => format!("line {line}, column {}", labels + column + 1),
+        Some(line) => format!("line {line}, column {}", text::column(labels, order.as_deref(), column)),
         None => format!("[{frame}, {}]", labels + column),
     };
     Err(FrameError::Sample { path: path.to_path_buf(), place, value: frames[frame][column], samples })

@@ -42,12 +42,12 @@ impl FrameLines {
         let Some(frame) = self.lines.row(line, |found| (found != taxels).then_some(taxels))? else { return Ok(None) };
         self.lines.unclear()?;
         if !std::mem::replace(&mut self.begun, true) && self.lines.is_numbered(&frame, &[]) {
-            self.lines.numbered(self.lines.number(), &frame);
+            self.lines.take_for_header(line, &frame);
             return Ok(None);
         }
         let wrong = frame.iter().position(|&value| !self.samples.takes(value));
         let Some(column) = wrong else { return Ok(Some(frame)) };
-        let place = format!("line {}, column {}", self.lines.number(), self.lines.labels() + column + 1);
+        let place = format!("line {}, column {}", self.lines.number(), self.lines.column(column));
         let path = self.lines.path().to_path_buf();
         Err(FrameError::Sample { path, place, value: frame[column], samples: self.samples })
     }

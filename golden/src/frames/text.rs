@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::blocks::{self, Blocks};
+use super::header::{self, FEWEST_NUMBERED, Header};
 use super::layout::{Layout, Target};
 use super::{FrameError, is_number};
 use crate::geometry;
@@ -10,8 +11,9 @@ use crate::separator::{self, Comma, Separator, is_unknown};
 
 /// What some programs write before the first line.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
-/// So few numbers in turn may be a frame: no sensor has fewer taxels.
-const FEWEST_NUMBERED: usize = 4;
+
+/// What may stand before decimals.
+const MARKS: [&str; 2] = ["comma", "point"];
 
 /// Rows of a file with their lines, and what is to be said of it.
 #[derive(Clone, Debug, Default)]
@@ -21,6 +23,8 @@ pub(super) struct Text {
     pub(super) lines: Vec<usize>,
     /// Columns before the values.
     pub(super) labels: usize,
+    /// The taxel of each value behind the labels, where that is not their order.
+    pub(super) order: Option<Vec<usize>>,
     /// The time of each row in seconds, where the header names such a column.
     pub(super) times: Option<Vec<f64>>,
     pub(super) remarks: Vec<String>,
@@ -46,17 +50,16 @@ pub(super) struct Lines {
     /// That of the first line which has one; spaces between the words of a header are none.
     separator: Option<Separator>,
     state: State,
-    /// The line of names.
-    header: Option<Vec<u8>>,
-    /// Which column holds times, and seconds of their unit.
-    time: Option<(usize, f64)>,
+    /// The lines above the first row, and what they say.
+    heads: Vec<Vec<u8>>,
+    header: Header,
     /// Columns of the sensor, where a frame is a block of lines.
     block: Option<usize>,
     /// How many lines there were.
     number: usize,
-    /// Whether a comma is a decimal point for certain, and the first one of which that is not clear.
-    decimal: bool,
-    unclear: Option<(usize, usize, String)>,
+    /// Whether a comma, and a point, is a decimal one for certain, and the first of which that is not clear.
+    decimal: [bool; 2],
+    unclear: [Option<(usize, usize, String)>; 2],
     /// Cells of a line that has blank ones behind its last value.
     padded: Option<usize>,
     /// Lines that were left out, and what was wrong with the first.
@@ -72,12 +75,12 @@ impl Lines {
             target: target.cloned(),
             separator: None,
             state: State::Begin,
-            header: None,
-            time: None,
+            heads: Vec::new(),
+            header: Header::default(),
             block: None,
             number: 0,
-            decimal: false,
-            unclear: None,
+            decimal: [false; 2],
+            unclear: [None, None],
             padded: None,
             bad: None,
             remarks: Vec::new(),
@@ -101,17 +104,27 @@ impl Lines {
             self.bad.as_ref().map(|(count, first)| format!("{path}: {count} lines are left out; the first: {first}"));
         let last = self.labels() + self.target.as_ref().map_or(0, |target| target.sensor.taxels());
         let padded = self.padded.map(|_| format!("{path}: cells behind column {last} are blank, and are none"));
-        self.remarks.iter().cloned().chain(padded).chain(bad).collect()
+        let named = self.header.remarks.iter().map(|remark| format!("{path}, line {}: {remark}", self.header.line));
+        self.remarks.iter().cloned().chain(named).chain(padded).chain(bad).collect()
     }
 
     /// Columns before the values.
     pub(super) fn labels(&self) -> usize {
-        self.layout.first()
+        self.columns().map_or(self.layout.labels, |[first, _]| first.saturating_sub(1))
+    }
+
+    /// First and last column of the values, from 1, where the header or the options say so.
+    fn columns(&self) -> Option<[usize; 2]> {
+        self.header.columns.or(self.layout.columns)
+    }
+
+    /// The column of a taxel, from 1.
+    pub(super) fn column(&self, taxel: usize) -> usize {
+        column(self.labels(), self.header.order.as_deref(), taxel)
     }
 
     /// The numbers of the next line. Nothing for a blank one, for one that begins with #, for lines of names and units.
-    /// `wrong_length` is given the number of values and returns the
-    /// number wanted, if that is another.
+    /// `wrong_length` is given the number of values and returns the number wanted, if that is another.
     pub(super) fn row(
         &mut self,
         line: &[u8],
@@ -133,15 +146,12 @@ impl Lines {
             self.separator = Some(Separator::Byte(*separator));
             return Ok(None);
         }
-        if self.header.as_deref() == Some(content) {
-            let remark = format!(
-                "{}, line {}: the header again, as between recordings that were put behind each other; what follows are frames of \
-                 the same",
-                self.path.display(),
-                self.number
-            );
+        if self.heads.iter().any(|head| head == content) {
             if !self.remarks.iter().any(|said| said.contains("the header again")) {
-                self.remarks.push(remark);
+                self.remark(
+                    "the header again, as between recordings that were put behind each other; what follows are frames of \
+                     the same",
+                );
             }
             return Ok(None);
         }
@@ -151,17 +161,23 @@ impl Lines {
         if let Some(separator) = foreign(content) {
             return Err(FrameError::Separator { path: self.path.clone(), line: self.number, separator });
         }
-        let is_words = fields.iter().skip(self.labels()).all(|field| no_number(field));
+        let values = fields.get(self.labels()..).unwrap_or_default();
+        let is_words = values.iter().all(|field| no_number(field));
+        let is_numbered = self.target.as_ref().is_some_and(|target| header::is_numbered(values, &target.sensor));
         let is_header = match self.state {
-            State::Begin => is_words,
-            State::Header => is_words && self.is_units(&fields),
+            State::Begin => is_words || is_numbered,
+            State::Header => is_words && self.is_units(values) || is_numbered && self.header.is_alike(),
             State::Rows => false,
         };
         self.separator = Some(separator).filter(|separator| !is_header || matches!(separator, Separator::Byte(_)));
         if is_header {
-            if self.state == State::Begin {
-                self.header = Some(content.trim_ascii().to_vec());
-                self.names(&fields)?;
+            if is_numbered {
+                self.numbered(values.iter().filter_map(|field| separator::number(field)).fold(0.0, f64::max));
+            }
+            self.heads.push(content.trim_ascii().to_vec());
+            if let Some(target) = &self.target {
+                let wrong = |problem| FrameError::Shape { path: self.path.clone(), line: self.number, problem };
+                self.header = self.header.with(self.number, &fields, target, &self.layout).map_err(wrong)?;
             }
             self.state = State::Header;
             return Ok(None);
@@ -177,19 +193,27 @@ impl Lines {
         }
     }
 
-    /// Whether the first row is a header of the sensor's numbers: they are whole and ascend, as those of no other row.
-    pub(super) fn is_numbered(&self, first: &[f64], others: &[Vec<f64>]) -> bool {
-        self.target.is_some() && self.header.is_none() && ascends(first) && !others.iter().any(|row| ascends(row))
+    /// Adds what is to be said of the line.
+    fn remark(&mut self, remark: &str) {
+        self.remarks.push(format!("{}, line {}: {remark}", self.path.display(), self.number));
     }
 
-    /// Says that a row was taken for the numbers of the columns.
-    pub(super) fn numbered(&mut self, line: usize, row: &[f64]) {
-        let remark = format!(
-            "{}, line {line}: numbers up to {} are those of the columns, as pandas writes them; the line is taken for a header",
-            self.path.display(),
-            row[row.len() - 1]
-        );
-        self.remarks.push(remark);
+    /// Whether the first row is a header of the sensor's numbers: they are whole and ascend, as those of no other row.
+    pub(super) fn is_numbered(&self, first: &[f64], others: &[&Vec<f64>]) -> bool {
+        self.target.is_some() && self.heads.is_empty() && ascends(first) && !others.iter().any(|row| ascends(row))
+    }
+
+    /// Takes the last line for one of numbers of the columns, and each that is the same.
+    pub(super) fn take_for_header(&mut self, line: &[u8], row: &[f64]) {
+        self.heads.push(line.trim_ascii().to_vec());
+        self.numbered(row[row.len() - 1]);
+    }
+
+    /// Says that a line was taken for the numbers of the columns.
+    fn numbered(&mut self, last: f64) {
+        self.remark(&format!(
+            "numbers up to {last} are those of the columns, as pandas writes them; the line is taken for a header"
+        ));
     }
 
     /// The values of a line behind the labels.
@@ -203,7 +227,7 @@ impl Lines {
         let dead = self.target.as_ref().map_or(Vec::new(), |target| target.dead.clone());
         // Blank cells behind the last column are nothing; a blank one in it is a value that is not there.
         let cells = separator.split(content);
-        let columns = match (&self.target, self.layout.columns) {
+        let columns = match (&self.target, self.columns()) {
             (_, Some(_)) => cells.len(),
             (Some(target), None) => first + target.sensor.taxels(),
             (None, None) => 1,
@@ -213,10 +237,13 @@ impl Lines {
             self.padded = Some(cells.len());
         }
         let path = self.path.clone();
-        let end = self.layout.columns.map_or(fields.len(), |[_, last]| last);
+        let end = self.columns().map_or(fields.len(), |[_, last]| last);
         if fields.len() < end {
             return Err(self.wrong_length(fields.len(), end));
         }
+        let unit = self.header.unit.unwrap_or(1.0);
+        let order = self.header.order.as_ref();
+        let taxel = |index: usize| order.and_then(|order| order.get(index).copied()).unwrap_or(index);
         let mut row = Vec::with_capacity(end);
         for (index, field) in fields.iter().enumerate().take(end).skip(first) {
             let (line, column) = match self.block {
@@ -224,20 +251,25 @@ impl Lines {
                 None => (self.number, index + 1),
             };
             let text = || String::from_utf8_lossy(field).chars().take(40).collect::<String>();
-            let number = separator::number(field).filter(|&value| is_number(value));
-            match (Comma::of(field), number) {
-                (Some(Comma::Decimal), Some(_)) => self.decimal = true,
-                (Some(Comma::Unclear), Some(_)) => {
-                    self.unclear.get_or_insert_with(|| (line, column, text()));
+            let number = separator::number(field).map(|value| value * unit).filter(|&value| is_number(value));
+            let points = Some(field).filter(|_| matches!(separator, Separator::Byte(b';')));
+            for (mark, found) in
+                [Comma::of(field), points.and_then(|field| Comma::of_points(field))].into_iter().enumerate()
+            {
+                match (found, number) {
+                    (Some(Comma::Decimal), Some(_)) => self.decimal[mark] = true,
+                    (Some(Comma::Unclear), Some(_)) => {
+                        self.unclear[mark].get_or_insert_with(|| (line, column, text()));
+                    }
+                    (Some(Comma::Unclear), None) => {
+                        return Err(FrameError::Thousands { path, line, column, text: text(), mark: MARKS[mark] });
+                    }
+                    _ => {}
                 }
-                (Some(Comma::Unclear), None) => {
-                    return Err(FrameError::Thousands { path, line, column, text: text() });
-                }
-                _ => {}
             }
             match number {
                 Some(number) => row.push(number),
-                None if dead.contains(&(index - first)) => row.push(0.0),
+                None if dead.contains(&taxel(index - first)) => row.push(0.0),
                 None => {
                     let (text, remedy) = (text(), self.value_remedy(&text()));
                     return Err(FrameError::Value { path, line, column, remedy, text });
@@ -245,7 +277,11 @@ impl Lines {
             }
         }
         match wrong_length(row.len()) {
-            None => Ok(row),
+            None => {
+                let mut ordered = row.clone();
+                row.iter().enumerate().for_each(|(index, &value)| ordered[taxel(index)] = value);
+                Ok(ordered)
+            }
             Some(wanted) => Err(self.wrong_length(fields.len(), first + wanted)),
         }
     }
@@ -254,7 +290,8 @@ impl Lines {
     fn value_remedy(&self, text: &str) -> String {
         let counts = self.target.as_ref().is_some_and(|target| target.counts);
         if is_unknown(text) && self.target.is_some() {
-            return "name a taxel that is dead in sensor.dead, or leave such frames out with --skip-bad".to_owned();
+            let skip = if self.layout.skip_bad { "" } else { ", or leave such frames out with --skip-bad" };
+            return format!("name a taxel that is dead in sensor.dead{skip}");
         }
         let what = if counts { "the sensor's count, such as 1012" } else { "the stress in pascals, such as -1250.5" };
         format!(
@@ -297,53 +334,11 @@ impl Lines {
         format!("give one {what} for each taxel of the sensor{hint}")
     }
 
-    /// Finds the columns of the values and of times by the names of a header.
-    fn names(&mut self, fields: &[&[u8]]) -> Result<(), FrameError> {
-        let Some(target) = &self.target else { return Ok(()) };
-        let (first, taxels) = (self.labels(), target.sensor.taxels());
-        let names: Vec<String> = fields.iter().map(|field| String::from_utf8_lossy(field).into_owned()).collect();
-        // Names that differ by numbers alone.
-        let kinds: Vec<String> = names.iter().map(|name| kind_of(name)).collect();
-        let mut runs: Vec<[usize; 2]> = Vec::new();
-        let mut at = 0;
-        for run in kinds.chunk_by(|a, b| a == b) {
-            if run.len() == taxels && run[0].contains('#') {
-                runs.push([at + 1, at + taxels]);
-            }
-            at += run.len();
-        }
-        let wrong = |problem: String| FrameError::Shape { path: self.path.clone(), line: self.number, problem };
-        let shown = |[first, last]: [usize; 2]| format!("{} to {}", names[first - 1], names[last - 1]);
-        if let (&[[from, to]], None) = (&runs[..], self.layout.columns) {
-            if first > 0 && first != from - 1 {
-                return Err(wrong(format!(
-                    "the header names columns {from} to {to}, {}, for the taxels, and --labels {first} takes others: \
-                     leave --labels away",
-                    shown([from, to])
-                )));
-            }
-            if from > 1 && first == 0 || names.len() > to {
-                self.remarks.push(format!(
-                    "{}, line {}: columns {from} to {to}, {}, are the taxels, as the header names them",
-                    self.path.display(),
-                    self.number,
-                    shown([from, to])
-                ));
-                self.layout.columns = Some([from, to]);
-            }
-        } else if let (&[a, b, ..], None, true) = (&runs[..], self.layout.columns, names.len() > first + taxels) {
-            let [left, right] = [a, b].map(|[from, to]| format!("--columns {from}-{to} ({})", shown([from, to])));
-            return Err(wrong(format!("a line holds several arrays: say which with {left} or {right}")));
-        }
-        let before = self.labels().min(names.len());
-        self.time = names[..before].iter().enumerate().find_map(|(column, name)| Some((column, seconds(name)?)));
-        Ok(())
-    }
-
     /// Whether the fields of a second line of words are units: the same for all taxels.
-    fn is_units(&self, fields: &[&[u8]]) -> bool {
-        let values = fields.get(self.labels()..).unwrap_or_default();
-        self.target.is_some() && values.len() > 1 && values.iter().all(|field| *field == values[0])
+    fn is_units(&self, values: &[&[u8]]) -> bool {
+        let Some(target) = &self.target else { return false };
+        let values = &values[..values.len().min(target.sensor.taxels())];
+        values.len() > 1 && values.iter().all(|field| *field == values[0])
     }
 
     /// The frames of a file of blocks.
@@ -354,7 +349,9 @@ impl Lines {
         wrong_length: impl Fn(usize) -> Option<usize>,
     ) -> Result<Text, FrameError> {
         let (columns, rows) = (target.sensor.columns, target.sensor.rows);
-        (self.state, self.separator, self.block) = (State::Rows, Some(Separator::Byte(b';')), Some(columns));
+        (self.state, self.block) = (State::Rows, Some(columns));
+        let (unit, remark) = blocks.unit.as_ref().map_or((None, None), |unit| header::worth(unit, target, -1.0));
+        self.header.unit = unit;
         let mut text = Text::default();
         for (line, frame) in &blocks.frames {
             self.number = line - 1;
@@ -367,17 +364,7 @@ impl Lines {
         let path = self.path.display();
         text.remarks = self.remarks();
         text.remarks.push(format!("{path}: frames are blocks of {rows} lines of {columns} values"));
-        if let Some((name, pascals)) = &blocks.unit {
-            text.remarks.push(if target.counts {
-                format!("{path}: the header gives the unit {name}; the design says what a value is worth")
-            } else {
-                text.rows.iter_mut().flatten().for_each(|value| *value *= -pascals);
-                format!(
-                    "{path}: the header gives the unit {name}; pressure presses, so that 1 {name} is {} Pa",
-                    -pascals
-                )
-            });
-        }
+        text.remarks.extend(remark.map(|remark| format!("{path}: {remark}")));
         Ok(text)
     }
 
@@ -390,43 +377,13 @@ impl Lines {
         Err(self.wrong_length(cells, self.labels() + self.target.as_ref().map_or(0, |target| target.sensor.taxels())))
     }
 
-    /// What is still to be refused at the end: commas that may be either.
+    /// What is still to be refused at the end: commas or points that may be either.
     pub(super) fn unclear(&self) -> Result<(), FrameError> {
-        match &self.unclear {
-            Some((line, column, text)) if !self.decimal => {
-                Err(FrameError::Thousands { path: self.path.clone(), line: *line, column: *column, text: text.clone() })
-            }
-            _ => Ok(()),
-        }
+        let open =
+            (0..MARKS.len()).find_map(|mark| Some((mark, self.unclear[mark].clone()?)).filter(|_| !self.decimal[mark]));
+        let Some((mark, (line, column, text))) = open else { return Ok(()) };
+        Err(FrameError::Thousands { path: self.path.clone(), line, column, text, mark: MARKS[mark] })
     }
-}
-
-/// A name with `#` in the place of each of its numbers.
-fn kind_of(name: &str) -> String {
-    let mut kind = String::new();
-    for letter in name.chars() {
-        if !letter.is_ascii_digit() {
-            kind.push(letter);
-        } else if !kind.ends_with('#') {
-            kind.push('#');
-        }
-    }
-    kind
-}
-
-/// Seconds of the unit of a column of times, by its name; nothing for another column.
-pub(crate) fn seconds(name: &str) -> Option<f64> {
-    let lower = name.to_lowercase();
-    let mut words = lower.split(|c: char| !c.is_alphanumeric() && c != 'µ').filter(|word| !word.is_empty());
-    let is_time = matches!(words.next()?, "t" | "time" | "timestamp" | "zeit");
-    let unit = match words.next() {
-        None | Some("s" | "sec" | "seconds") => 1.0,
-        Some("ms" | "millis" | "milliseconds") => 1e-3,
-        Some("us" | "µs" | "micros" | "microseconds") => 1e-6,
-        Some("ns") => 1e-9,
-        Some(_) => return None,
-    };
-    is_time.then_some(unit)
 }
 
 /// Reads all rows of a text, see [`Lines::row`], or blocks of rows where the shape of the file says so.
@@ -449,7 +406,7 @@ pub(super) fn read(
         let Some(row) = lines.row(line, &wrong_length)? else { continue };
         let fields = lines.separator.map(|separator| separator.split(separator.trim(line))).unwrap_or_default();
         let label = |column: usize| fields.get(column).and_then(|label| separator::number(label));
-        if let Some((column, unit)) = lines.time {
+        if let Some((column, unit)) = lines.header.time {
             text.times.get_or_insert_default().push(label(column).map_or(f64::NAN, |time| unit * time));
         }
         labels.push(lines.labels() == 0 || label(0).is_some());
@@ -458,22 +415,35 @@ pub(super) fn read(
     }
     lines.unclear()?;
     lines.padding(bytes)?;
-    if let [first, others @ ..] = &text.rows[..] {
+    if let Some(first) = text.rows.first().cloned() {
+        let is_again = |row: usize| text.rows[row] == first && labels[row] == labels[0];
+        let others: Vec<usize> = (1..text.rows.len()).filter(|&row| !is_again(row)).collect();
+        let rows: Vec<&Vec<f64>> = others.iter().map(|&row| &text.rows[row]).collect();
         // Its label is a word where all others are numbers.
-        let is_labelled = || {
-            target.is_some() && is_whole(first) && !others.is_empty() && !labels[0] && labels[1..].iter().all(|&is| is)
-        };
+        let is_labelled = target.is_some()
+            && is_whole(&first)
+            && !rows.is_empty()
+            && !labels[0]
+            && others.iter().all(|&row| labels[row]);
         // A single row may be a frame whose values happen to ascend.
-        let is_numbered = lines.is_numbered(first, others)
-            && (!others.is_empty() || first.windows(2).all(|pair| pair[1] - pair[0] < 1.5) && first[0] < 2.0);
-        if is_numbered || lines.header.is_none() && is_labelled() {
-            let row = text.rows.remove(0);
-            lines.numbered(text.lines.remove(0), &row);
+        let is_numbered = !rows.is_empty() && lines.is_numbered(&first, &rows);
+        if is_numbered || lines.heads.is_empty() && is_labelled {
+            lines.number = text.lines[0];
+            lines.take_for_header(&[], &first);
+            text.rows = rows.into_iter().cloned().collect();
+            text.lines = others.iter().map(|&row| text.lines[row]).collect();
         }
     }
+    text.order = lines.header.order.take();
     text.labels = lines.labels();
     text.remarks = lines.remarks();
     Ok(text)
+}
+
+/// The column of a taxel behind the labels, from 1.
+pub(super) fn column(labels: usize, order: Option<&[usize]>, taxel: usize) -> usize {
+    let place = order.and_then(|order| order.iter().position(|&other| other == taxel));
+    labels + place.unwrap_or(taxel) + 1
 }
 
 /// What separates the numbers of a line, where that is nothing that separates values here.

@@ -65,6 +65,15 @@ fn separators_of_thousands_are_asked_for() {
     assert!(lines.frame(b"1,010;2;3;4;5;6\n").is_err());
     // In blocks of rows as well.
     refused(read("1,010;2;3\n4;5;6\n", 0), &["separators of thousands"]);
+    // Points between semicolons, as in Germany.
+    for text in ["-1.226;-2.310;3;4;5;6\n", "1;2;3\n4;5;12.345\n", "1.234;0,5;3;4;5;6\n", "1.234.567;2;3;4;5;6\n"] {
+        refused(read(text, 0), &["line", "separators of thousands", "every point", "separate the values by commas"]);
+    }
+    for text in
+        ["1.226\t2.310\t3\t4\t5\t6\n", "1.226;0.310;3;4;5;6\n", "1.226;2.3;3;4;5;6\n", "1.226;2;3;4;5;1234.567\n"]
+    {
+        assert_eq!(read(text, 0).unwrap().frames[0][0], 1.226, "{text:?}");
+    }
     let decimal = "-7,5,-1,0,0,0,2,0,-3,0,5,0\n";
     refused(read(decimal, 0), &["line 1", "column 12 where 6", "decimal commas? Separate the values by semicolons"]);
 }
@@ -87,7 +96,7 @@ fn a_header_of_sensor_numbers_is_none_of_the_frames() {
     assert_eq!(read("left,1,5,3,4,5,7\nright,1,2,3,4,6,9\n", 1).unwrap().frames.len(), 2);
     let mut lines = FrameLines::new(Path::new("port"), &pad(""), 0);
     assert!(lines.frame(b"3,5,7,11,12,20\n").unwrap().is_none() && lines.remark().is_some());
-    assert!(lines.frame(b"3,5,7,11,12,20\n").unwrap().is_some());
+    assert!(lines.frame(b"3,5,7,11,12,21\n").unwrap().is_some());
 }
 
 /// A tab beside a blank cell separates as a comma does.
@@ -126,6 +135,107 @@ fn blank_cells_at_either_end_of_a_line() {
         }
     }
     assert!(read("1\t2\t3\t4\t7\t5\t\t\n", 0).unwrap().remark.unwrap().contains("cells behind column 6 are blank"));
+}
+
+/// Numbers of all taxels, or of their columns and rows, are a header, and so is each line that is the same.
+#[test]
+fn numbers_above_the_frames_are_a_header() {
+    let labelled = LINES.replace("-7.5", "0,-7.5").replace("-8", "1,-8");
+    for (text, labels, again) in [
+        (format!("0,1,2,3,4,5\n{LINES}0,1,2,3,4,5\n"), 0, true),
+        (format!("3,5,7,11,12,20\n{LINES}3,5,7,11,12,20\n"), 0, false),
+        (format!("frame,1,2,3,4,5,6\n{labelled}frame,1,2,3,4,5,6\n"), 1, true),
+        (format!("frame,3,5,7,11,12,20\n{labelled}frame,3,5,7,11,12,20\n"), 1, false),
+        (format!("S,S,S,S,S,S\n1,2,3,4,5,6\n{LINES}S,S,S,S,S,S\n1,2,3,4,5,6\n"), 0, true),
+        (format!("0,1,2,0,1,2\n0,0,0,1,1,1\n{LINES}"), 0, false),
+        (format!("1,1,1,2,2,2\n1,2,3,1,2,3\n{LINES}"), 0, false),
+        // As pandas writes its index, and as others write times and totals.
+        (format!(",0,1,2,3,4,5\n{labelled}"), 0, false),
+        (format!("frame,1,2,3,4,5,6\n{labelled}"), 0, false),
+        (
+            format!("t (s),1,2,3,4,5,6,total\n{}", labelled.replace(",5\n", ",5,9\n").replace(",6\n", ",6,9\n")),
+            0,
+            false,
+        ),
+        (format!(",a,b,c,d,e,f\n{labelled}"), 0, false),
+    ] {
+        let remark = both(read(&text, labels)).remark.unwrap();
+        assert_eq!(remark.contains("the header again"), again, "{text:?}: {remark}");
+    }
+    let mut lines = FrameLines::new(Path::new("port"), &pad(""), 0);
+    for line in ["5,4,3,2,1,0\n", "5,6,2,-3,0,-7.5\n", "5,4,3,2,1,0\n"] {
+        assert_eq!(lines.frame(line.as_bytes()).unwrap().is_some(), line.contains('6'));
+    }
+    // A frame has other numbers, or names above it.
+    for text in ["0,0,0,0,0,0\n", "1,2,3,4,5,5\n", "a,b,c,d,e,f\n1,2,3,4,5,6\n"] {
+        assert_eq!(read(text, 0).unwrap().frames.len(), 1, "{text:?}");
+    }
+}
+
+#[test]
+fn names_say_which_taxel_a_column_is() {
+    let turned = "5,-3,2,0,-1,-7.5\n6,-4,0.5,1,-2,-8\n";
+    let by_columns = "-7.5,2,-1,-3,0,5\n-8,0.5,-2,-4,1,6\n";
+    let said = "the numbers of their names say which is which";
+    for (text, is_said) in [
+        (format!("p5,p4,p3,p2,p1,p0\n{turned}"), true),
+        (format!("6,5,4,3,2,1\n{turned}"), true),
+        (format!("mat2 p6,mat2 p5,mat2 p4,mat2 p3,mat2 p2,mat2 p1\n{turned}"), true),
+        (format!("R1C1,R2C1,R1C2,R2C2,R1C3,R2C3\n{by_columns}"), true),
+        (format!("x0y0,x0y1,x1y0,x1y1,x2y0,x2y1\n{by_columns}"), true),
+        (format!("p[0][0],p[0][1],p[0][2],p[1][0],p[1][1],p[1][2]\n{LINES}"), false),
+        (format!("x0y0,x1y0,x2y0,x0y1,x1y1,x2y1\n{LINES}"), false),
+        // In the order of the wiring.
+        (format!("e20,e3,e5,e12,e11,e7\n{LINES}"), false),
+    ] {
+        let remark = both(read(&text, 0)).remark.unwrap_or_default();
+        assert_eq!(remark.contains(said), is_said, "{text:?}: {remark}");
+    }
+    // The column of the file is named, and a dead taxel stands where its name is.
+    refused(read("p5,p4,p3,p2,p1,p0\n1,2,3,4,x,6\n", 0), &["line 2, column 5"]);
+    let found = read_bytes("f.csv", b"p5,p4,p3,p2,p1,p0\n1,2,3,4,x,6\n", &pad("dead = [1]"), 0).unwrap();
+    assert_eq!(found.frames, [[6.0, 0.0, 4.0, 3.0, 2.0, 1.0]]);
+    for names in ["time,p0,p1,p2,p3,p4", "Zeit;Sensor 1;Sensor 2;Sensor 3;Sensor 4;Sensor 5", ",p0,p1,p2,p3,p4"] {
+        let text = format!("{names}\n{}", LINES.replace(',', if names.contains(';') { ";" } else { "," }));
+        refused(read(&text, 0), &["line 1: 5 taxels are named, the design has 6", "column 1", "sensor.dead"]);
+    }
+    refused(read(&format!("p0,p1,p2,p3,p4,total\n{LINES}"), 0), &["5 taxels are named", "column 6, \"total\""]);
+    refused(read(&format!("t (s),a,b,c,d,e\n{LINES}"), 0), &["5 taxels are named", "column 1, \"t (s)\""]);
+}
+
+#[test]
+fn units_above_the_frames() {
+    let names = "p0,p1,p2,p3,p4,p5\n";
+    for (header, pascals) in [
+        (format!("{names}mbar,mbar,mbar,mbar,mbar,mbar\n"), 100.0),
+        (format!("{names}[N/cm²],[N/cm²],[N/cm²],[N/cm²],[N/cm²],[N/cm²]\n"), 1e4),
+        ("p0 (kPa),p1 (kPa),p2 (kPa),p3 (kPa),p4 (kPa),p5 (kPa)\n".to_owned(), 1e3),
+        ("p0_psi,p1_psi,p2_psi,p3_psi,p4_psi,p5_psi\n".to_owned(), 6_894.757_293),
+        ("a (g/cm2),b (g/cm2),c (g/cm2),d (g/cm2),e (g/cm2),f (g/cm2)\n".to_owned(), 98.066_5),
+        ("p0 (Pa),p1 (Pa),p2 (Pa),p3 (Pa),p4 (Pa),p5 (Pa)\n".to_owned(), 1.0),
+        (format!("{names}raw,raw,raw,raw,raw,raw\n"), 1.0),
+    ] {
+        let text = format!("{header}{LINES}");
+        let found = read(&text, 0).unwrap();
+        let near = |(found, value): (&f64, f64)| (found - value * pascals).abs() <= 1e-9 * found.abs();
+        assert!(found.frames[1].iter().zip(B).all(near), "{text:?}: {:?}", found.frames);
+        let remark = found.remark.unwrap_or_default();
+        assert_eq!(remark.contains(&format!("is {pascals} Pa")), pascals > 1.0, "{remark}");
+        assert_eq!(remark.contains("raw, which is no known pressure"), text.contains("raw"), "{remark}");
+        // Counts are worth what the design says.
+        let counts = read_bytes("f.csv", text.as_bytes(), &pad("pa_per_count = -10.0"), 0).unwrap();
+        assert_eq!(counts.frames, [A, B]);
+    }
+    // Of times, too.
+    let text =
+        format!("t,{names}ms,kPa,kPa,kPa,kPa,kPa,kPa\n{}", LINES.replace("-7.5", "0,-7.5").replace("-8", "5,-8"));
+    assert_eq!(read(&text, 0).unwrap().times, Some(vec![0.0, 0.005]));
+    for (unit, pascals) in [("N/cm2", 1e4), ("N/mm²", 1e6), ("kg/cm^2", 98_066.5), ("g/cm2", 98.066_5)] {
+        let found = read(&format!("UNITS {unit}\n1,2,3\n4,5,6\n"), 0).unwrap();
+        assert!((found.frames[0][0] / -pascals - 1.0).abs() < 1e-9, "{unit}: {:?}", found.frames);
+    }
+    let found = read("UNITS raw\n1,2,3\n4,5,6\n", 0).unwrap();
+    assert!(found.frames[0][0] == 1.0 && found.remark.unwrap().contains("unit raw, which is no known pressure"));
 }
 
 #[test]

@@ -213,7 +213,7 @@ fn numbers_of_columns_are_a_header() {
         "2,3,4,5,6,7\n",
         "0,-1,-2,-3,-4,-5\n",
         "a,b,c,d,e,f\n0,1,2,3,4,5\n",
-        "1,0,2,3,4,5\n0,1,2,3,4,5\n",
+        "1,0,2,3,4,6\n0,1,2,3,4,5\n",
     ] {
         let (frames, remark) = read(text, 0).unwrap();
         assert_eq!(

@@ -91,9 +91,19 @@ fn meaning(name: &str) -> Option<Meaning> {
     })
 }
 
-/// What a unit of pressure, in small letters, is worth in pascals.
+/// What a unit of pressure is worth in pascals: one of its own, or a force on an area.
 pub(crate) fn pressure_unit(unit: &str) -> Option<f64> {
-    worth(unit).and_then(|(factor, pressure)| pressure.then_some(factor))
+    let unit = unit.to_lowercase().replace('²', "2").replace('^', "");
+    if let Some((force, area)) = unit.split_once('/') {
+        let on_m2 = match area {
+            "mm2" => 1e6,
+            "cm2" => 1e4,
+            "m2" => 1.0,
+            _ => return None,
+        };
+        return worth(force).and_then(|(force, pressure)| (!pressure).then_some(force * on_m2));
+    }
+    worth(&unit).and_then(|(factor, pressure)| pressure.then_some(factor))
 }
 
 /// What a unit is worth in newtons, or in pascals, and whether it is a pressure.

@@ -1,0 +1,266 @@
+//! What the lines above the frames say: which columns hold the taxels, in which order and unit, and which one times.
+
+use super::layout::{Layout, Target};
+use crate::calibrate::recorded::pressure_unit;
+use crate::sensor::Sensor;
+use crate::separator;
+
+/// So few numbers in turn may be a frame: no sensor has fewer taxels.
+pub(super) const FEWEST_NUMBERED: usize = 4;
+
+/// The names of the columns, and what they say.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Header {
+    /// Of all lines of the header: a unit stands in brackets behind its name.
+    names: Vec<String>,
+    /// First and last column of the values, from 1, where names say so.
+    pub(super) columns: Option<[usize; 2]>,
+    /// The taxel of each value, where that is not their order.
+    pub(super) order: Option<Vec<usize>>,
+    /// Which column holds times, and seconds of their unit.
+    pub(super) time: Option<(usize, f64)>,
+    /// Pascals of a value.
+    pub(super) unit: Option<f64>,
+    /// What is to be said of it, and of which line.
+    pub(super) remarks: Vec<String>,
+    pub(super) line: usize,
+}
+
+impl Header {
+    /// The header with one more line, whose fields are numbers, names or units.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with names that leave open which columns are the taxels.
+    pub(super) fn with(&self, line: usize, fields: &[&[u8]], target: &Target, layout: &Layout) -> Result<Self, String> {
+        let mut names: Vec<String> = fields.iter().map(|field| decoded(field)).collect();
+        for (name, above) in names.iter_mut().zip(&self.names) {
+            *name = match separator::number(name.as_bytes()) {
+                Some(_) => format!("{above} {name}"),
+                None => format!("{above} ({})", name.trim_matches(['(', ')', '[', ']', '{', '}'])),
+            };
+        }
+        let line = if self.names.is_empty() { line } else { self.line };
+        let mut header = Self { names, line, ..Self::default() };
+        header.columns(target, layout)?;
+        let (names, taxels) = (&header.names, target.sensor.taxels());
+        let [from, to] = header.columns.or(layout.columns).unwrap_or([layout.labels + 1, layout.labels + taxels]);
+        let before = from.saturating_sub(1).min(names.len());
+        header.time = names[..before].iter().enumerate().find_map(|(column, name)| Some((column, seconds(name)?)));
+        let Some(values) = names.get(from.saturating_sub(1)..to).filter(|values| values.len() == taxels) else {
+            return Ok(header);
+        };
+        header.order = order(values, &target.sensor).filter(|order| !order.is_sorted());
+        if header.order.is_some() {
+            header.remarks.push(format!(
+                "the columns, {} to {}, are not in the order of the taxels: the numbers of their names say which is which",
+                values[0],
+                values[taxels - 1]
+            ));
+        }
+        let (_, unit) = split(&values[0]);
+        if !unit.is_empty() && values.iter().all(|name| split(name).1 == unit) {
+            let (worth, remark) = worth(unit, target, 1.0);
+            header.unit = worth;
+            header.remarks.extend(remark);
+        }
+        Ok(header)
+    }
+
+    /// Finds the columns of the values.
+    fn columns(&mut self, target: &Target, layout: &Layout) -> Result<(), String> {
+        let (names, first, taxels) = (&self.names, layout.first(), target.sensor.taxels());
+        // Names that differ by numbers alone.
+        let kinds: Vec<String> = names.iter().map(|name| kind_of(name)).collect();
+        let mut runs: Vec<[usize; 2]> = Vec::new();
+        let mut at = 0;
+        for run in kinds.chunk_by(|a, b| a == b) {
+            if run.len() == taxels && run[0].contains('#') {
+                runs.push([at + 1, at + taxels]);
+            }
+            at += run.len();
+        }
+        let shown = |[first, last]: [usize; 2]| format!("{} to {}", names[first - 1], names[last - 1]);
+        if layout.columns.is_some() {
+            return Ok(());
+        }
+        let is_label = |name: &String| name.is_empty() || seconds(name).is_some();
+        if runs.is_empty() && first == 0 && names.len() == taxels + 1 && is_label(&names[0]) {
+            runs.push([2, taxels + 1]);
+        }
+        match runs[..] {
+            [[from, to]] => {
+                if first > 0 && first != from - 1 {
+                    return Err(format!(
+                        "the header names columns {from} to {to}, {}, for the taxels, and --labels {first} takes others: \
+                         leave --labels away",
+                        shown([from, to])
+                    ));
+                }
+                if from > 1 && first == 0 || names.len() > to {
+                    self.remarks.push(format!(
+                        "columns {from} to {to}, {}, are the taxels, as the header names them",
+                        shown([from, to])
+                    ));
+                    self.columns = Some([from, to]);
+                }
+            }
+            [a, b, ..] if names.len() > first + taxels => {
+                let [left, right] = [a, b].map(|[from, to]| format!("--columns {from}-{to} ({})", shown([from, to])));
+                return Err(format!("a line holds several arrays: say which with {left} or {right}"));
+            }
+            [] if names.len() == first + taxels => {
+                // Names without a number among numbered ones, or a time, are no taxels.
+                let values = first..first + taxels;
+                let others = values.clone().filter(|&column| !kinds[column].contains('#')).count();
+                let are_numbered = others < taxels - others;
+                let is_other = |&column: &usize| {
+                    !kinds[column].contains('#') && (are_numbered || column == first && is_label(&names[column]))
+                };
+                if let Some(column) = values.clone().find(is_other) {
+                    return Err(format!(
+                        "{} taxels are named, the design has {taxels}: column {}, {:?}, is none; correct columns and rows of \
+                         the design, or give each taxel a column and name dead ones in sensor.dead",
+                        taxels - values.filter(is_other).count(),
+                        column + 1,
+                        names[column]
+                    ));
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Whether the names of some columns are the same, so that a line of numbers below is one of names.
+    pub(super) fn is_alike(&self) -> bool {
+        let mut names = self.names.clone();
+        names.sort();
+        names.len() < FEWEST_NUMBERED || names.windows(2).any(|pair| pair[0] == pair[1])
+    }
+}
+
+/// Whether a line has the numbers of all taxels, or of their columns or rows, and no other number.
+pub(super) fn is_numbered(fields: &[&[u8]], sensor: &Sensor) -> bool {
+    let whole = |number: f64| (number >= 0.0 && number.fract() == 0.0).then_some(number as usize);
+    let numbers = fields.iter().filter_map(|field| separator::number(field));
+    let Some(numbers) = numbers.map(whole).collect::<Option<Vec<usize>>>() else { return false };
+    let Sensor { columns, rows, .. } = *sensor;
+    if numbers.len() != sensor.taxels() || numbers.len() < FEWEST_NUMBERED {
+        return false;
+    }
+    let mut sorted = numbers.clone();
+    sorted.sort_unstable();
+    let of = |number: &dyn Fn(usize) -> usize| {
+        numbers.iter().enumerate().all(|(at, &found)| found == sorted[0] + number(at))
+    };
+    let is_grid = columns > 1 && rows > 1 && (of(&|taxel| taxel % columns) || of(&|taxel| taxel / columns));
+    sorted[0] < 2 && (is_grid || sorted.iter().copied().eq(sorted[0]..sorted[0] + numbers.len()))
+}
+
+/// The taxel of each name by its number, or by its row and column; nothing where numbers do not say so.
+fn order(names: &[String], sensor: &Sensor) -> Option<Vec<usize>> {
+    let (columns, rows) = (sensor.columns, sensor.rows);
+    let kind = kind_of(&names[0]);
+    if names.iter().any(|name| kind_of(name) != kind) {
+        return None;
+    }
+    let numbers = |name: &String| -> Vec<usize> {
+        split(name).0.split(|c: char| !c.is_ascii_digit()).filter_map(|digits| digits.parse().ok()).collect()
+    };
+    let numbers: Vec<Vec<usize>> = names.iter().map(numbers).collect();
+    // Each of the numbers in a name that is not the same in all names, from 0.
+    let mut parts: Vec<Vec<usize>> = Vec::new();
+    for part in 0..kind.matches('#').count() {
+        let values = numbers.iter().map(|of| of.get(part).copied()).collect::<Option<Vec<usize>>>()?;
+        let least = *values.iter().min()?;
+        if values.iter().any(|&value| value != least) {
+            parts.push(values.iter().map(|value| value - least.min(1)).collect());
+        }
+    }
+    let order: Vec<usize> = match parts.as_slice() {
+        [only] => only.clone(),
+        [a, b] => {
+            let word = kind.split('#').next().unwrap_or_default().trim().to_lowercase();
+            let row_first = match word.as_str() {
+                "r" | "row" | "y" | "zeile" => true,
+                "c" | "col" | "column" | "x" | "spalte" => false,
+                _ if columns == rows => return None,
+                _ => b.iter().max().is_some_and(|&most| most + 1 == columns),
+            };
+            let (row, column) = if row_first { (a, b) } else { (b, a) };
+            let place =
+                |(&row, &column): (&usize, &usize)| (row < rows && column < columns).then_some(row * columns + column);
+            row.iter().zip(column).map(place).collect::<Option<_>>()?
+        }
+        _ => return None,
+    };
+    let mut sorted = order.clone();
+    sorted.sort_unstable();
+    sorted.into_iter().eq(0..names.len()).then_some(order)
+}
+
+/// What a value is worth in pascals by the unit of a header, and what is to be said of it; `sign` is that of what presses.
+pub(super) fn worth(unit: &str, target: &Target, sign: f64) -> (Option<f64>, Option<String>) {
+    let gives = format!("the header gives the unit {unit}");
+    match pressure_unit(unit).map(|pascals| sign * pascals) {
+        Some(_) if target.counts => (None, Some(format!("{gives}; the design says what a value is worth"))),
+        None if target.counts => (None, None),
+        None => (None, Some(format!("{gives}, which is no known pressure: values are taken for pascals"))),
+        Some(1.0) => (None, None),
+        Some(pascals) => {
+            let presses = if sign < 0.0 { "pressure presses, so that " } else { "" };
+            (Some(pascals), Some(format!("{gives}; {presses}1 {unit} is {pascals} Pa")))
+        }
+    }
+}
+
+/// A name without its unit, and the unit: in brackets, or a known one behind a number.
+fn split(name: &str) -> (&str, &str) {
+    let around = |c: char| !c.is_alphanumeric() && c != '²';
+    if let Some((before, unit)) = name.rsplit_once(['(', '[', '{'])
+        && unit.starts_with(char::is_alphabetic)
+        && (unit.contains('/') || !unit.contains(|c: char| c.is_ascii_digit()))
+    {
+        return (before, unit.trim_matches(around));
+    }
+    let behind = name.rfind(|c: char| c.is_ascii_digit()).map_or(name.len(), |last| last + 1);
+    let unit = name[behind..].trim_matches(around);
+    if pressure_unit(unit).is_some() { (&name[..behind], unit) } else { (name, "") }
+}
+
+/// A name with `#` in the place of each of its numbers.
+fn kind_of(name: &str) -> String {
+    let (name, unit) = split(name);
+    let mut kind = String::new();
+    for letter in name.chars() {
+        if !letter.is_ascii_digit() {
+            kind.push(letter);
+        } else if !kind.ends_with('#') {
+            kind.push('#');
+        }
+    }
+    kind + unit
+}
+
+/// The text of a field: UTF-8, or else Latin-1.
+fn decoded(field: &[u8]) -> String {
+    let latin = |_| field.iter().copied().map(char::from).collect();
+    let text: String = std::str::from_utf8(field).map_or_else(latin, str::to_owned);
+    text.replace(char::is_control, " ")
+}
+
+/// Seconds of the unit of a column of times, by its name; nothing for another column.
+pub(crate) fn seconds(name: &str) -> Option<f64> {
+    let lower = name.to_lowercase();
+    let mut words = lower.split(|c: char| !c.is_alphanumeric() && c != 'µ').filter(|word| !word.is_empty());
+    let is_time = matches!(words.next()?, "t" | "time" | "timestamp" | "zeit");
+    let unit = match words.next() {
+        None | Some("s" | "sec" | "seconds") => 1.0,
+        Some("ms" | "millis" | "milliseconds") => 1e-3,
+        Some("us" | "µs" | "micros" | "microseconds") => 1e-6,
+        Some("ns") => 1e-9,
+        Some(_) => return None,
+    };
+    is_time.then_some(unit)
+}
