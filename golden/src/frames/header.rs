@@ -50,7 +50,17 @@ impl Header {
         let Some(values) = names.get(from.saturating_sub(1)..to).filter(|values| values.len() == taxels) else {
             return Ok(header);
         };
-        header.order = order(values, &target.sensor).filter(|order| !order.is_sorted());
+        let order = order(values, &target.sensor);
+        if order.is_none()
+            && let Some(pair) = as_text(values)
+        {
+            return Err(format!(
+                "the columns are sorted by the text of their names, {} before {}: sort them by their numbers, or number them \
+                 from 0 without a gap",
+                pair[0], pair[1]
+            ));
+        }
+        header.order = order.filter(|order| !order.is_sorted());
         if header.order.is_some() {
             header.remarks.push(format!(
                 "the columns, {} to {}, are not in the order of the taxels: the numbers of their names say which is which",
@@ -165,10 +175,7 @@ fn order(names: &[String], sensor: &Sensor) -> Option<Vec<usize>> {
     if names.iter().any(|name| kind_of(name) != kind) {
         return None;
     }
-    let numbers = |name: &String| -> Vec<usize> {
-        split(name).0.split(|c: char| !c.is_ascii_digit()).filter_map(|digits| digits.parse().ok()).collect()
-    };
-    let numbers: Vec<Vec<usize>> = names.iter().map(numbers).collect();
+    let numbers: Vec<Vec<usize>> = names.iter().map(|name| numbers_of(name)).collect();
     // Each of the numbers in a name that is not the same in all names, from 0.
     let mut parts: Vec<Vec<usize>> = Vec::new();
     for part in 0..kind.matches('#').count() {
@@ -198,6 +205,18 @@ fn order(names: &[String], sensor: &Sensor) -> Option<Vec<usize>> {
     let mut sorted = order.clone();
     sorted.sort_unstable();
     sorted.into_iter().eq(0..names.len()).then_some(order)
+}
+
+/// Two names of which the second has the smaller number, where all names are sorted as text.
+fn as_text(names: &[String]) -> Option<&[String]> {
+    let is_one_kind = names.windows(2).all(|pair| kind_of(&pair[0]) == kind_of(&pair[1]));
+    (is_one_kind && names.is_sorted())
+        .then(|| names.windows(2).find(|pair| numbers_of(&pair[0]) > numbers_of(&pair[1])))?
+}
+
+/// The numbers in a name.
+fn numbers_of(name: &str) -> Vec<usize> {
+    split(name).0.split(|c: char| !c.is_ascii_digit()).filter_map(|digits| digits.parse().ok()).collect()
 }
 
 /// What a value is worth in pascals by the unit of a header, and what is to be said of it; `sign` is that of what presses.

@@ -53,6 +53,8 @@ pub(super) struct Lines {
     /// The lines above the first row, and what they say.
     heads: Vec<Vec<u8>>,
     header: Header,
+    /// Lines with # before the first other one: one of so many fields as a row has is a header.
+    comments: Vec<(usize, Vec<u8>)>,
     /// Columns of the sensor, where a frame is a block of lines.
     block: Option<usize>,
     /// How many lines there were.
@@ -77,6 +79,7 @@ impl Lines {
             state: State::Begin,
             heads: Vec::new(),
             header: Header::default(),
+            comments: Vec::new(),
             block: None,
             number: 0,
             decimal: [false; 2],
@@ -138,7 +141,13 @@ impl Lines {
         {
             geometry::compare_remark(content, &self.path, self.number, &target.sensor)?;
         }
-        if self.number <= self.layout.skip_lines || content.is_empty() || content.starts_with(b"#") {
+        if self.number <= self.layout.skip_lines || content.is_empty() {
+            return Ok(None);
+        }
+        if let Some(comment) = content.strip_prefix(b"#") {
+            if self.state == State::Begin {
+                self.comments.push((self.number, comment.trim_ascii().to_vec()));
+            }
             return Ok(None);
         }
         // As spreadsheets have it.
@@ -162,25 +171,34 @@ impl Lines {
             return Err(FrameError::Separator { path: self.path.clone(), line: self.number, separator });
         }
         let values = fields.get(self.labels()..).unwrap_or_default();
-        let is_words = values.iter().all(|field| no_number(field));
-        let is_numbered = self.target.as_ref().is_some_and(|target| header::is_numbered(values, &target.sensor));
-        let is_header = match self.state {
-            State::Begin => is_words || is_numbered,
-            State::Header => is_words && self.is_units(values) || is_numbered && self.header.is_alike(),
-            State::Rows => false,
+        let is_words = || values.iter().all(|field| no_number(field));
+        let is_numbered = || self.target.as_ref().is_some_and(|target| header::is_numbered(values, &target.sensor));
+        let (is_words, is_numbered) = match self.state {
+            State::Begin => (is_words(), is_numbered()),
+            State::Header => (is_words() && self.is_units(values), is_numbered() && self.header.is_alike()),
+            State::Rows => (false, false),
         };
+        let is_header = is_words || is_numbered;
         self.separator = Some(separator).filter(|separator| !is_header || matches!(separator, Separator::Byte(_)));
         if is_header {
             if is_numbered {
                 self.numbered(values.iter().filter_map(|field| separator::number(field)).fold(0.0, f64::max));
             }
             self.heads.push(content.trim_ascii().to_vec());
-            if let Some(target) = &self.target {
-                let wrong = |problem| FrameError::Shape { path: self.path.clone(), line: self.number, problem };
-                self.header = self.header.with(self.number, &fields, target, &self.layout).map_err(wrong)?;
-            }
+            self.names(self.number, &fields)?;
             self.state = State::Header;
             return Ok(None);
+        }
+        if self.state == State::Begin {
+            // As numpy.savetxt writes its header.
+            let names = std::mem::take(&mut self.comments).into_iter().find_map(|(line, comment)| {
+                let names =
+                    Separator::of(&comment).fields(&comment).into_iter().map(<[u8]>::to_vec).collect::<Vec<_>>();
+                (names.len() == fields.len()).then_some((line, names))
+            });
+            if let Some((line, names)) = names {
+                self.names(line, &names.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
+            }
         }
         self.state = State::Rows;
         match self.values(separator, content, wrong_length) {
@@ -191,6 +209,15 @@ impl Lines {
             }
             Err(error) => Err(error),
         }
+    }
+
+    /// Takes the fields of a line for names of the columns.
+    fn names(&mut self, line: usize, fields: &[&[u8]]) -> Result<(), FrameError> {
+        if let Some(target) = &self.target {
+            let wrong = |problem| FrameError::Shape { path: self.path.clone(), line, problem };
+            self.header = self.header.with(line, fields, target, &self.layout).map_err(wrong)?;
+        }
+        Ok(())
     }
 
     /// Adds what is to be said of the line.
@@ -240,6 +267,12 @@ impl Lines {
         let end = self.columns().map_or(fields.len(), |[_, last]| last);
         if fields.len() < end {
             return Err(self.wrong_length(fields.len(), end));
+        }
+        // A blank cell may be that of a label.
+        if let Some(wanted) = wrong_length(end.saturating_sub(first))
+            && fields.iter().any(|field| field.is_empty())
+        {
+            return Err(self.wrong_length(fields.len(), first + wanted));
         }
         let unit = self.header.unit.unwrap_or(1.0);
         let order = self.header.order.as_ref();

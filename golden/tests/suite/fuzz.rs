@@ -181,12 +181,13 @@ proptest! {
         rows in prop::collection::vec(prop::collection::vec(-1e6..1e6_f64, 4), 1..5),
         changes in changes(),
         labels in 0..3_usize,
+        header in prop::sample::select(&["", "p0,p1,p3,p2\n", "r1c1 (kPa),r2c1 (kPa),r1c2 (kPa),r2c2 (kPa)\n", "# t;0;1;2\n"][..]),
     ) {
         let lines: Vec<String> =
             rows.iter().map(|row| row.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")).collect();
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("fuzzed.csv");
-        fs::write(&path, changed(&lines.join("\n"), &changes)).expect("writable");
+        fs::write(&path, changed(&(header.to_owned() + &lines.join("\n")), &changes)).expect("writable");
         match read_frames(&path, &four(), labels) {
             Ok(frames) => {
                 prop_assert!(frames.iter().all(|frame| frame.len() == 4));

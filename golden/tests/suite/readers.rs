@@ -116,7 +116,7 @@ fn blank_cells_at_either_end_of_a_line() {
         ("", format!("{a}\n,-1,0,2,-3,5\n-7.5,-1,0,2,-3,\n"), skip.clone(), good.clone()),
         ("", format!("p0,p1,p2,p3,p4,p5,sum\n{a},9\n,-1,0,2,-3,5,9\n"), skip.clone(), good.clone()),
         ("", "-7.5,-1,0,2,-3,\n".to_owned(), Layout::default(), Err("line 1, column 6: \"\"")),
-        ("", ",-1,0,2,-3,5,9\n".to_owned(), Layout::default(), Err("line 1, column 1: \"\"")),
+        ("", ",-1,0,2,-3,5,9\n".to_owned(), Layout::default(), Err("column 7 where 6")),
         ("dead = [0, 5]", ",-1,0,2,-3,\n".to_owned(), 0.into(), Ok(vec![vec![0.0, -1.0, 0.0, 2.0, -3.0, 0.0]])),
         ("dead = [0, 5]", "7,,-1,0,2,-3,\n".to_owned(), 1.into(), Ok(vec![vec![0.0, -1.0, 0.0, 2.0, -3.0, 0.0]])),
         ("dead = [0, 5]", ",-1,0\n2,-3,\n".to_owned(), 0.into(), Ok(vec![vec![0.0, -1.0, 0.0, 2.0, -3.0, 0.0]])),
@@ -191,6 +191,17 @@ fn names_say_which_taxel_a_column_is() {
         let remark = both(read(&text, 0)).remark.unwrap_or_default();
         assert_eq!(remark.contains(said), is_said, "{text:?}: {remark}");
     }
+    // A header behind #, as of numpy.savetxt; words of a remark are none.
+    for (text, is_said) in [
+        (format!("# of June\n# p5,p4,p3,p2,p1,p0\n{turned}"), true),
+        (format!("# time p0 p1 p2 p3 p4 p5\n{}", LINES.replace("-7.5", "0,-7.5").replace("-8", "1,-8")), false),
+        (format!("# of the time of six taxels\n# taxels 5 4 3 2 1 0\n{LINES}"), false),
+    ] {
+        let remark = both(read(&text, 0)).remark.unwrap_or_default();
+        assert_eq!(remark.contains(said), is_said, "{text:?}: {remark}");
+    }
+    refused(read(&format!("# time,p0,p1,p2,p3,p4\n{LINES}"), 0), &["line 1: 5 taxels are named"]);
+    refused(read(&format!("e1,e10,e12,e2,e3,e7\n{LINES}"), 0), &["text of their names, e12 before e2", "sort them"]);
     // The column of the file is named, and a dead taxel stands where its name is.
     refused(read("p5,p4,p3,p2,p1,p0\n1,2,3,4,x,6\n", 0), &["line 2, column 5"]);
     let found = read_bytes("f.csv", b"p5,p4,p3,p2,p1,p0\n1,2,3,4,x,6\n", &pad("dead = [1]"), 0).unwrap();
