@@ -5,8 +5,9 @@
 
 use std::path::Path;
 
-use super::FrameError;
 use super::layout::{Layout, Target};
+use super::{FrameError, header};
+use crate::sensor::Sensor;
 use crate::separator::{self, Separator, is_unknown};
 
 /// A line of a file.
@@ -21,6 +22,8 @@ struct Line<'a> {
 pub(super) struct Blocks {
     /// The first line of each, from 1, and its fields, separated by semicolons or tabs.
     pub(super) frames: Vec<(usize, Vec<u8>)>,
+    /// Whether numbers of the columns stand above.
+    pub(super) is_numbered: bool,
     /// The unit that the header names.
     pub(super) unit: Option<String>,
 }
@@ -28,7 +31,7 @@ pub(super) struct Blocks {
 /// Puts the rows of each frame on one line; nothing if the file has a line for each frame, or lines of other lengths.
 pub(super) fn join(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) -> Result<Option<Blocks>, FrameError> {
     let (columns, rows) = (target.sensor.columns, target.sensor.rows);
-    let all: Vec<Line> = separator::lines(bytes)
+    let mut all: Vec<Line> = separator::lines(bytes)
         .enumerate()
         .skip(layout.skip_lines)
         .map(|(index, line)| (index + 1, line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line)))
@@ -52,6 +55,16 @@ pub(super) fn join(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
             )),
             _ => Ok(None),
         };
+    }
+    // Numbers of the columns above frames, as pandas writes them: without them the rows are whole frames.
+    let numbers = Sensor { rows: 1, ..target.sensor.clone() };
+    let head = all.iter().find_map(|line| Some((line.content, line.row.as_ref()?)));
+    let head = head.filter(|(_, row)| header::is_numbered(row, &numbers)).map(|(content, _)| content);
+    let is_row = |line: &&Line| line.row.as_ref().is_some_and(|row| row.len() == columns) && Some(line.content) != head;
+    let others = all.iter().filter(is_row).count();
+    let is_numbered = head.is_some() && others > 0 && others.is_multiple_of(rows);
+    if is_numbered {
+        all.iter_mut().filter(|line| Some(line.content) == head).for_each(|line| line.row = None);
     }
     // Points between semicolons may separate thousands.
     let separator: &[u8] =
@@ -80,7 +93,7 @@ pub(super) fn join(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
         let problem = format!("the file ends within a frame, after {} of {rows} rows", block.len());
         return Err(wrong(all.len(), problem));
     }
-    Ok(Some(Blocks { frames, unit: unit(&all) }))
+    Ok(Some(Blocks { frames, is_numbered, unit: unit(&all) }))
 }
 
 /// The fields of a line that has nothing but numbers and readings that are not there.

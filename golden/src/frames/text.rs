@@ -396,7 +396,8 @@ impl Lines {
         self.unclear()?;
         let path = self.path.display();
         text.remarks = self.remarks();
-        text.remarks.push(format!("{path}: frames are blocks of {rows} lines of {columns} values"));
+        let numbers = if blocks.is_numbered { ", below numbers of the columns" } else { "" };
+        text.remarks.push(format!("{path}: frames are blocks of {rows} lines of {columns} values{numbers}"));
         text.remarks.extend(remark.map(|remark| format!("{path}: {remark}")));
         Ok(text)
     }

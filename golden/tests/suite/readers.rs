@@ -340,6 +340,13 @@ fn frames_as_blocks_of_rows() {
     ] {
         refused(read(text, 0), &parts);
     }
+    // Numbers of the columns above each frame, and rows that happen to be such.
+    let mut wide = pad("");
+    wide.sensor.columns = 4;
+    let found = read_bytes("f.csv", b"0,1,2,3\n5,6,7,8\n1,1,1,1\n0,1,2,3\n6,7,8,9\n2,2,2,2\n", &wide, 0).unwrap();
+    assert_eq!((found.frames.len(), found.frames[1][0]), (2, 6.0));
+    assert!(found.remark.unwrap().contains("below numbers of the columns"));
+    assert_eq!(read_bytes("f.csv", b"0,1,2,3\n4,5,6,7\n", &wide, 0).unwrap().frames[0][1], 1.0);
     let skip = Layout { skip_lines: 2, ..Layout::default() };
     assert_eq!(read("1 2 3\n9 9 9\n1 2 3\n4 5 6\n", skip.clone()).unwrap().frames, [[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]]);
     assert_eq!(read(&format!("1,2,3\nanything: 5\n{LINES}"), skip).unwrap().frames, [A, B]);
