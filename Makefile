@@ -186,6 +186,13 @@ bench: tools ## Measure solver, generator, simulation, cycles and cells, into re
 	@python3 tools/results.py bench $(BENCH_FOLDER)/figures.json
 	@python3 tools/plots.py
 
+LUTS_DESIGN := xtask/designs/sensor1-keys.toml
+
+.PHONY: luts
+luts: tools build ## Fit the estimates of LUT and FF to the cells that `make bench` counted, and to other modules (minutes)
+	@tools/luts.sh $(LUTS_DESIGN)
+	@$(XTASK) luts $(LUTS_DESIGN) $(TARGET)/luts/stat.json
+
 # One point a job; sweeps on more than one machine: `make sweep-cluster SNAKEMAKE_OPTIONS='--executor slurm --jobs 100'`.
 SWEEP_FOLDER  := $(TARGET)/sweep
 SWEEP_DESIGNS ?= $(addprefix designs/,paper.toml sensor1-reduced.toml sensor1-fast.toml sensor1-wide.toml sensor2-fast.toml sensor2-wide.toml) \

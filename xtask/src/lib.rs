@@ -4,6 +4,7 @@ pub mod bench;
 pub mod confidence;
 pub mod corner_cases;
 pub mod drift;
+pub mod luts;
 pub mod mutants;
 pub mod noise;
 pub mod stress;

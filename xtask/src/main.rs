@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use sptfra::message;
 
-use commands::{bench, cells, confidence, corner_cases, drift, mutants, noise, solver, stress};
+use commands::{bench, cells, confidence, corner_cases, drift, luts, mutants, noise, solver, stress};
 
 /// Runs what only developers run.
 #[derive(Parser)]
@@ -28,6 +28,7 @@ enum Command {
     Confidence(confidence::Args),
     Drift(drift::Args),
     Cells(cells::Args),
+    Luts(luts::Args),
 }
 
 fn main() -> ExitCode {
@@ -41,5 +42,6 @@ fn main() -> ExitCode {
         Command::Confidence(args) => confidence::run(&args),
         Command::Drift(args) => drift::run(&args),
         Command::Cells(args) => cells::run(&args),
+        Command::Luts(args) => luts::run(&args),
     }))
 }

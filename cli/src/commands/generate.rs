@@ -9,6 +9,7 @@ use golden::progress::Progress;
 use hdl_gen::emit::boards::Board;
 use hdl_gen::emit::{Options, Prefix, emit_for};
 use hdl_gen::inspection::{excess_on, warnings};
+use hdl_gen::plan::luts::logic;
 use hdl_gen::write::{check_folder, write_folder};
 
 use crate::arguments::{Target, design_file};
@@ -77,10 +78,12 @@ pub fn run(args: &Args) -> message::Result {
         }
     }
     let warnings: String = warned.iter().map(|warning| format!("warning: {warning}\n")).collect();
+    let about = logic(&plan).map_or_else(String::new, |logic| format!("about {logic}\n"));
     let shown = folder.display();
     Ok(format!(
         "{shown}: {} files, {kibibytes} KiB\n\
-         {} taxels, {}: latency {} cycles, interval {} cycles, {} DSP, {} RAMB36\n{warnings}\
+         {} taxels, {}: latency {} cycles, interval {} cycles, {} DSP, {} RAMB36\n\
+         {about}{warnings}\
          next: {shown}/README.md has ports and words\n      \
          sptfra run {} --frames FRAMES.csv simulates your frames\n      \
          vivado -mode batch -source {shown}/vivado/synth.tcl synthesizes\n",

@@ -12,6 +12,7 @@ use hdl_gen::inspection::{contacts, doubled, excess, figures, narrow, shares};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::energy::Energy;
 use hdl_gen::plan::format::short;
+use hdl_gen::plan::luts::logic;
 use hdl_gen::plan::savings::savings;
 
 use crate::arguments::{Target, design_file};
@@ -213,6 +214,9 @@ fn resources(out: &mut String, plan: &Plan) -> std::fmt::Result {
     match shares(plan) {
         Some([dsp, bram36]) => writeln!(out, ": {dsp:.1} and {bram36:.1} % of {part}")?,
         None => writeln!(out)?,
+    }
+    if let Some(logic) = logic(plan) {
+        writeln!(out, "  about {logic}")?;
     }
     for told in [excess(plan), doubled(plan)].into_iter().flatten() {
         writeln!(out, "  {told}")?;

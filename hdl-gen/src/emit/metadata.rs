@@ -4,6 +4,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use crate::plan::energy::Energy;
+use crate::plan::luts::logic;
 use crate::plan::product::{Product, Vector};
 use crate::plan::schedule::Window;
 use crate::plan::streams::WORD_BITS;
@@ -24,6 +25,7 @@ pub fn predicted(plan: &Plan) -> Value {
         "bram36": plan.resources.bram36,
         "rom_bits": plan.resources.rom_bits,
         "blocks": plan.resources.blocks,
+        "logic_estimate": logic(plan),
         "energy_estimate": Energy::of(plan),
     })
 }

@@ -5,6 +5,7 @@ use serde::Serialize;
 use tera::{Context, Tera};
 
 use crate::plan::Plan;
+use crate::plan::luts::{Logic, logic};
 use crate::plan::words::{SUMMARY, SUMMARY_WORDS, Word, status_bits};
 
 use super::flows::vlnv;
@@ -34,6 +35,7 @@ struct View {
     dsp_block: &'static str,
     dsp: usize,
     bram36: f64,
+    logic: Option<Logic>,
     stream_bits: usize,
     beats_in: usize,
     beats_out: usize,
@@ -76,6 +78,7 @@ impl View {
             dsp_block: plan.resources.dsp_block.name(),
             dsp: plan.resources.dsp,
             bram36: plan.resources.bram36,
+            logic: logic(plan),
             stream_bits: streams.bits,
             beats_in: streams.beats_in(),
             beats_out: streams.beats_out(),

@@ -21,6 +21,7 @@ pub mod format;
 pub mod gain;
 pub mod lane;
 pub mod layout;
+pub mod luts;
 pub mod matrix;
 pub mod memory;
 mod need;

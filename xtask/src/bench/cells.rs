@@ -109,38 +109,23 @@ struct Module {
 /// [`levels::longest`].
 pub fn count(file: &Path, metadata: &Path, statistics: &Path, netlist: Option<&Path>) -> Result<Cells, BenchError> {
     let Metadata { top, predicted } = read_json(metadata)?;
-    let path = statistics;
-    let statistics: Statistics = read_json(path)?;
+    let place =
+        |module: &str| predicted.blocks.iter().position(|block| block.modules.iter().any(|name| name == module));
+    let rest = predicted.blocks.len();
+    let counts = by_module(&top, statistics, rest, place)?;
+    let of_rest = MetadataBlock { name: REST.to_owned(), modules: Vec::new(), dsp: 0, bram36: 0.0 };
     let mut blocks: Vec<Block> = predicted
         .blocks
         .iter()
-        .map(|block| Block {
+        .chain([&of_rest])
+        .zip(counts)
+        .map(|(block, yosys)| Block {
             name: block.name.clone(),
-            yosys: Count::default(),
+            yosys,
             predicted: Expected { dsp: block.dsp, bram36: block.bram36 },
             longest: None,
         })
         .collect();
-    let (yosys, predicted_rest) = (Count::default(), Expected::default());
-    blocks.push(Block { name: REST.to_owned(), yosys, predicted: predicted_rest, longest: None });
-    let rest = blocks.len() - 1;
-    let place =
-        |module: &str| predicted.blocks.iter().position(|block| block.modules.iter().any(|name| name == module));
-    // A module with the block of the one that instantiates it, and how often it is there.
-    let mut waiting = vec![(top.clone(), rest, 1)];
-    while let Some((key, parent, times)) = waiting.pop() {
-        let Some(module) = statistics.module(&key) else {
-            return Err(BenchError::NoModule { path: path.to_owned(), module: key });
-        };
-        let block = place(base_name(&key)).unwrap_or(parent);
-        for (kind, &number) in &module.num_cells_by_type {
-            if statistics.module(kind).is_some() {
-                waiting.push((kind.clone(), block, times * number));
-            } else {
-                blocks[block].yosys.add(kind, times * number);
-            }
-        }
-    }
     if let Some(netlist) = netlist {
         let ways = levels::longest(netlist, &top, rest, |module| place(base_name(module)))?;
         for (block, way) in blocks.iter_mut().zip(ways) {
@@ -158,6 +143,38 @@ pub fn count(file: &Path, metadata: &Path, statistics: &Path, netlist: Option<&P
     let file = file.display().to_string();
     let longest = blocks.iter().filter_map(|block| block.longest.clone()).max_by_key(|way| way.levels);
     Ok(Cells { file, design: top, blocks, total: Block { name: "all".to_owned(), yosys: total, predicted, longest } })
+}
+
+/// Sums Yosys' `stat -json` of a synthesis that was not flattened by the places of its modules. What has no place counts
+/// for the module that instantiates it, at the top for the rest.
+///
+/// # Errors
+/// [`BenchError::Read`] and [`BenchError::Json`]; [`BenchError::NoModule`] if the statistics are of another design.
+pub fn by_module(
+    top: &str,
+    statistics: &Path,
+    rest: usize,
+    place: impl Fn(&str) -> Option<usize>,
+) -> Result<Vec<Count>, BenchError> {
+    let path = statistics;
+    let statistics: Statistics = read_json(path)?;
+    let mut counts = vec![Count::default(); rest + 1];
+    // A module with the place of the one that instantiates it, and how often it is there.
+    let mut waiting = vec![(top.to_owned(), rest, 1)];
+    while let Some((key, parent, times)) = waiting.pop() {
+        let Some(module) = statistics.module(&key) else {
+            return Err(BenchError::NoModule { path: path.to_owned(), module: key });
+        };
+        let own = place(base_name(&key)).unwrap_or(parent);
+        for (kind, &number) in &module.num_cells_by_type {
+            if statistics.module(kind).is_some() {
+                waiting.push((kind.clone(), own, times * number));
+            } else {
+                counts[own].add(kind, times * number);
+            }
+        }
+    }
+    Ok(counts)
 }
 
 impl Statistics {

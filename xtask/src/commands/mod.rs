@@ -5,6 +5,7 @@ pub mod cells;
 pub mod confidence;
 pub mod corner_cases;
 pub mod drift;
+pub mod luts;
 pub mod mutants;
 pub mod noise;
 pub mod solver;

@@ -3,6 +3,7 @@
 mod bench;
 mod cells;
 mod corner_cases;
+mod luts;
 mod netlist;
 mod solver;
 mod stress;
