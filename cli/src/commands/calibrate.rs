@@ -16,6 +16,9 @@ use crate::message::{self, json_or, say};
 
 const EXAMPLE: &str = "Example:\n  sptfra calibrate pad --out pad-calibrated.toml\n  sptfra calibrate pad --frames weights.csv --forces weights.forces.csv --out pad-fitted.toml";
 
+/// With these, nothing is trained.
+const RECORDED: [&str; 3] = ["frames", "uniform", "constant_load"];
+
 const CALIBRATE_FILES: &str = "\
 FORCES.csv: one line a frame; a header with units, such as F_x (N),F_y (N),F_z (N); any of them may be missing, blanks are
 unknown. F_z or weights alone will do: weight (g). A column contact or place names what belongs together. Frames without
@@ -47,19 +50,19 @@ pub struct Args {
     #[command(flatten)]
     recordings: Recordings,
     /// Seed of the contacts and of the training.
-    #[arg(long, default_value_t = 1, conflicts_with_all = ["frames", "uniform", "constant_load"])]
+    #[arg(long, default_value_t = 1, conflicts_with_all = RECORDED)]
     seed: u64,
     /// Training contacts: "sliding", round ones, or "general", of any shape, tilted, held; default: the design's.
-    #[arg(long, value_parser = word::<TrainingSet>(), conflicts_with_all = ["frames", "uniform", "constant_load"])]
+    #[arg(long, value_parser = word::<TrainingSet>(), conflicts_with_all = RECORDED)]
     training_set: Option<TrainingSet>,
     /// Hidden units of the correction, 0 for none; default: 128, with "sliding" 64, with --quick 24.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256), conflicts_with_all = ["frames", "uniform", "constant_load"])]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256), conflicts_with_all = RECORDED)]
     hidden: Option<u16>,
     /// Take a tenth of the time, for constants with twice the error.
-    #[arg(long, conflicts_with_all = ["frames", "uniform", "constant_load"])]
+    #[arg(long, conflicts_with_all = RECORDED)]
     quick: bool,
     /// Take about ten times the time, for a network that is as exact with half of the hidden units.
-    #[arg(long, conflicts_with_all = ["frames", "uniform", "constant_load", "quick"])]
+    #[arg(long, conflicts_with_all = RECORDED, conflicts_with = "quick")]
     thorough: bool,
     /// Report as JSON.
     #[arg(long)]
