@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Checks of README and docs: check_text.py [--root DIR]
+"""Checks of README, docs, headers of Verilog files and help: check_text.py [--root DIR]
 
 Words of the README and of all pages, sentence length, table cells, old vocabulary, and numbers marked with a row of
 results/. A mark stands behind a number, <!--FILE ROW COLUMN-->; ROW is the first cells of a row, joined by "/", in
@@ -15,7 +15,7 @@ import sys
 from pathlib import Path
 
 README_WORDS, ALL_WORDS = 1000, 30_000
-MEAN, LONGEST, CELL = 18.0, 35, 80
+MEAN, LONGEST, LONGEST_IN_HEADERS, CELL = 18.0, 35, 25, 80
 # Words that the project does not use any more, and what to write.
 OLD = {
     "told apart": "separated", "tells apart": "separates", "parted": "separated", "parting": "separation",
@@ -40,6 +40,22 @@ def pages(root: Path) -> list[Path]:
     return found + sorted((root / "docs").rglob("*.md"))
 
 
+def headers(root: Path) -> list[tuple[str, list[str], int]]:
+    """Verilog files and commands: name, blocks of the header or of the help, and the most words of a sentence."""
+    found = []
+    for path in sorted((root / "hdl-gen/rtl").rglob("*.v")):
+        comment = re.match(r"(?:\s*//.*\n)*", path.read_text(encoding="utf-8"))[0]
+        lines = [line.removeprefix("//").rstrip() for line in comment.splitlines()]
+        running = [line.strip() for line in lines if not re.search(r"\S  +\S|SPDX|`[0-9]`", line)]
+        found.append((str(path.relative_to(root)), "\n".join(running).split("\n\n"), LONGEST_IN_HEADERS))
+    for path in sorted((root / "cli/src/commands").glob("*.rs")):
+        lines = [line.strip().removeprefix("///").strip() for line in path.read_text(encoding="utf-8").splitlines()
+                 if re.match(r"\s*///|\s*$|\s*#\[", line)]
+        lines = ["" if line.startswith("#[") else line for line in lines]
+        found.append((str(path.relative_to(root)), "\n".join(lines).split("\n\n"), LONGEST))
+    return [(name, [" ".join(block.split()) for block in blocks], most) for name, blocks, most in found]
+
+
 def prose(text: str) -> tuple[list[str], list[str]]:
     """Blocks of running text, and the cells of tables, without code, comments and headings."""
     text = re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)
@@ -61,9 +77,8 @@ def plain(text: str) -> str:
     return re.sub(r"[*_]", "", re.sub(r"`[^`]*`", "x", text))
 
 
-def sentences(blocks: list[str]) -> list[str]:
+def sentences(blocks: list[str], ends: str = r"(?<=[.!?:])\s+(?=[A-Z`\"(0-9*\[])") -> list[str]:
     lines = [line for block in blocks for line in block.split("\n")]
-    ends = r"(?<=[.!?:])\s+(?=[A-Z`\"(0-9*\[])"
     return [one for line in lines for one in re.split(ends, plain(line)) if len(one.split()) > 2]
 
 
@@ -109,6 +124,12 @@ def marked(text: str) -> list[tuple[str, str, str, str]]:
     return found
 
 
+def old_words(name: str, text: str) -> list[str]:
+    old = {} if name in NAMES_OLD_WORDS else OLD
+    found = [word for word in old if re.search(rf"\b{re.escape(word)}\b", text.lower())]
+    return [f"{name}: {word!r}; write {old[word] or 'it otherwise'!r}" for word in found]
+
+
 def check(root: Path) -> list[str]:
     wrong: list[str] = []
     results, lengths, total = Results(root), [], 0
@@ -128,10 +149,7 @@ def check(root: Path) -> list[str]:
             if lengths[-1] > LONGEST:
                 wrong.append(f"{name}: {lengths[-1]} words: {sentence[:90]}…")
         wrong += [f"{name}: a cell of {len(plain(cell))} characters: {cell}" for cell in cells if len(plain(cell)) > CELL]
-        low = plain(" ".join(blocks + cells)).lower()
-        for old, new in {} if name in NAMES_OLD_WORDS else OLD.items():
-            if re.search(rf"\b{re.escape(old)}\b", low):
-                wrong.append(f"{name}: {old!r}; write {new or 'it otherwise'!r}")
+        wrong += old_words(name, plain(" ".join(blocks + cells)))
         for stated, file, row, column in marked(text):
             try:
                 measured = results.find(file, row, column)
@@ -139,6 +157,10 @@ def check(root: Path) -> list[str]:
                     wrong.append(f"{name}: states {stated}, results/{file} {row} {column} is {measured}")
             except (LookupError, OSError, ValueError) as error:
                 wrong.append(f"{name}: {stated}: {error}")
+    for name, blocks, most in headers(root):
+        long = [sentence for sentence in sentences(blocks, r"(?<=[.!?:])\s+") if len(sentence.split()) > most]
+        wrong += [f"{name}: {len(sentence.split())} words: {sentence[:90]}…" for sentence in long]
+        wrong += old_words(name, plain(" ".join(blocks)))
     if total > ALL_WORDS:
         wrong.append(f"{total} words in all; at most {ALL_WORDS}")
     mean = sum(lengths) / max(len(lengths), 1)

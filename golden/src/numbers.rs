@@ -22,7 +22,10 @@ pub(crate) fn middle(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
 
 /// To so many significant digits.
 pub(crate) fn rounded(value: f64, digits: i32) -> f64 {
-    let digits = digits - 1 - value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
+    if value == 0.0 {
+        return value;
+    }
+    let digits = digits - 1 - value.abs().log10().floor() as i32;
     let scale = 10_f64.powi(digits.abs());
     if digits >= 0 { (value * scale).round() / scale } else { (value / scale).round() * scale }
 }

@@ -34,7 +34,7 @@ const LOADED: f64 = 0.1;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RestError {
     /// Too few frames.
-    #[error("{0} frames at rest tell no noise: record {FRAMES} at least, better 200")]
+    #[error("{0} frames without load are too few to measure noise: record {FRAMES} at least, better 200")]
     Few(usize),
     /// Offsets of readings in pascals.
     #[error(

@@ -58,7 +58,7 @@ pub struct Args {
     /// Hidden units of the correction, 0 for none; default: 128, with "sliding" 64, with --quick 24.
     #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256), conflicts_with_all = RECORDED)]
     hidden: Option<u16>,
-    /// Take a tenth of the time, for constants with twice the error.
+    /// Take a tenth of the time, to try it: the error may be twice as large.
     #[arg(long, conflicts_with_all = RECORDED)]
     quick: bool,
     /// Take about ten times the time, for a network that is as exact with half of the hidden units.
@@ -134,11 +134,12 @@ pub fn run(args: &Args) -> message::Result {
         if has_constants {
             say!(text, "  training set  {}", report.training_set);
         }
-        say!(text, "  noise       up to {} % of the largest reading", 100.0 * design.input.noise);
+        say!(text, "  noise       up to {} % of the largest reading", (1e4 * design.input.noise).round() / 100.0);
         if has_constants {
             say!(text, "  gain        {:.4}", report.gain);
             let [c1, c3] = report.friction_correction;
-            say!(text, "  friction    {c1:.4} mu + {c3:.4} mu |mu|^2");
+            let sign = if c3 < 0.0 { '-' } else { '+' };
+            say!(text, "  friction    {c1:.4} mu {sign} {:.4} mu |mu|^2", c3.abs());
         }
         if let Some([x, y]) = report.half_window {
             say!(text, "  correction  {} weights, window {} x {} taxels", report.weights, 2 * x + 1, 2 * y + 1);

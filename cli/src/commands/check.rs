@@ -15,10 +15,9 @@ use crate::message::{self, Message, say};
 
 /// Checks a recording before its forces are trusted.
 ///
-/// Reports, in a line each, the likely cause and the key to change: values in another unit than the design says, stress
-/// with the wrong sign, no tension anywhere, a missing tare, crosstalk, taxels in another order, readings at the end of
-/// the converter, broken taxels. Then the share that lies beyond the calibration. The exit code is 0 only if nothing is
-/// found.
+/// Reports the likely cause and the key to change, a line each. It finds wrong units, wrong signs, a missing tare, broken
+/// taxels, taxels in another order, crosstalk, missing tension and readings at the end of the converter. Then comes the share
+/// that lies beyond the calibration. The exit code is 0 only if nothing is found.
 ///
 /// With `--unloaded`: offset, noise and drift of each taxel from a recording without load, and warnings.
 #[derive(clap::Args)]

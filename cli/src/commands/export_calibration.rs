@@ -30,9 +30,8 @@ In the design file:
 
 /// Writes the calibration that a board loads into its bank, as CSV.
 ///
-/// For a design with [hardware] calibration = "ram": each taxel's gain and offset and, with `room` for dead taxels, its weights in
-/// the stress of the dead taxels that the design names. `load_calibration` of the Python driver reads the file. Nothing
-/// is synthesized again.
+/// For a design with [hardware] calibration = "ram": each taxel's gain and offset. With `room` for dead taxels, also its
+/// weights in their stress. `load_calibration` of the Python driver reads the file. Nothing is synthesized again.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{BANK_FILE}"))]
 pub struct Args {

@@ -66,7 +66,7 @@ pub fn run(
         beyond,
         calibration: out,
         noise_of_contacts,
-        expected_error: design.expected_error_at(noise_of_contacts.unwrap_or(design.input.noise)),
+        expected_error: design.expected_error_at(noise_of_contacts.map_or(design.input.noise, shown)),
     };
     if json {
         return Ok((serde_json::to_string_pretty(&report)? + "\n").into());
@@ -101,11 +101,10 @@ pub fn run(
         say!(text, "{expected}");
     }
     say!(text, "[algorithm] noise_floor_pa = {:.1}  # three standard deviations", ceil(rest.noise_floor_pa));
-    if rest.noise_of_full_scale > 0.0 {
+    if rest.noise_of_full_scale > 0.0 && design.algorithm.regularisation.factor() > 0.0 {
         say!(
             text,
-            "[algorithm] regularisation = {{ noise = {} }}  # for deep layers; relative to contacts whose largest stress is \
-             full_scale_pa",
+            "[algorithm] regularisation = {{ noise = {} }}  # relative to contacts whose largest stress is full_scale_pa",
             shown(rest.noise_of_full_scale)
         );
     }

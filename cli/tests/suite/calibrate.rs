@@ -51,7 +51,7 @@ fn from_recordings_to_a_design() {
     for part in [
         "pad_calibrated: calibrated design",
         "determined",
-        "F_z: errs by",
+        "F_z: error",
         "not determined",
         "friction: no tangential",
         "next: sptfra solve",

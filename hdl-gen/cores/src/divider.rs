@@ -75,8 +75,8 @@ const DESCRIPTION: Description = Description {
     banner: "\
 Unsigned restoring divider: quotient (64 bits) = numerator (64 bits) / denominator (48 bits), rounded down.
 
-One quotient bit a cycle: start in cycle 0 gives done, for one cycle, in cycle 65; a new start is taken
-from that cycle on. Plain unsigned integers. A denominator of zero gives all ones.",
+One quotient bit a cycle. A start in cycle 0 gives done for one cycle in cycle 65. A new start is taken from then
+on. A denominator of zero gives all ones.",
     ports: &[
         ("clock", "rising edge"),
         ("reset", "synchronous, high: gives up the division under way"),

@@ -3,9 +3,9 @@
 //
 // Soft reset of a core between two AXI4-Streams that may not notice: no beat on offer is withdrawn, no packet out cut.
 //
-// On request the output goes on until the packet it has begun is sent, then closes; the core is reset for one cycle;
-// both streams open again. The packet coming in, if there is one, is taken to its TLAST and dropped, however long that
-// takes; the next one is a frame again. Outside of that both streams pass in the same cycle.
+// On request the output sends the packet it has begun to its end and closes. The core is reset for one cycle, then
+// both streams open again. A packet that is coming in is taken to its TLAST and dropped. The next one is a frame
+// again. At all other times both streams pass in the same cycle.
 
 `default_nettype none
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Hands the samples of a wide stream on one by one, the one in a beat's lowest bits first.
+// Serialiser of a wide stream: one sample a cycle, the one in a beat's lowest bits first.
 //
-// Latency 1 cycle, one sample a cycle. What fills a frame's last beat behind its samples is dropped. A frame with too
-// many beats has one sample for each of them, so that it stays too long.
+// Latency: 1 cycle. What fills a frame's last beat behind its samples is dropped. A frame with too many beats has one
+// sample for each of them, so that it stays too long.
 
 `default_nettype none
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Takes every beat of a stream that cannot be held, and keeps whole frames only: one that begins while there is room,
-// to its TLAST; any other not a beat of.
+// Filter of whole frames for a stream that cannot be held. A frame that begins while there is room is kept to its
+// TLAST. Of any other frame no beat is kept.
 //
 // Whether the beat on offer is kept is said in the same cycle. s_tready rises one cycle after reset ends.
 

@@ -3,10 +3,10 @@
 //
 // Multiply-accumulate lane: sums coefficient * data in one DSP block of 27 by 18 bits, or in two.
 //
-// Latency 3 cycles (operands, products, accumulator), one product a cycle. All are two's complement integers. One block
-// takes 18 by 27 bits; the accumulator wraps, which up to 15 products never make it do. Two blocks take 27 by 35 bits,
-// and round each product / 2^17 to the nearest integer, ties upwards: cut bits would add up to a bias. A DSP48E2 takes
-// the product with the lower 17 bits, shifted by 17, from the block below.
+// Latency 3 cycles (operands, products, accumulator), one product a cycle. All are two's complement integers. One
+// block takes 18 by 27 bits; sums of up to 15 products never wrap its accumulator. Two blocks take 27 by 35 bits.
+// They round each product / 2^17 to the nearest integer, ties upwards: cut bits would add up to a bias. A DSP48E2
+// takes the product with the lower 17 bits, shifted by 17, from the block below.
 
 `default_nettype none
 

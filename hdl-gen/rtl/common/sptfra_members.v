@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Which members of a quad are taxels of their own. On a centre line of the grid members coincide: only the first of
-// them counts. Combinational.
+// Mask of the members of a quad that are taxels of their own. On a centre line of the grid members coincide, and only
+// the first counts. Combinational.
 //
 // Member 1 is member 0 mirrored in x, member 2 in y, member 3 in both.
 

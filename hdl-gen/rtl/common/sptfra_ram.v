@@ -4,9 +4,9 @@
 // Memory with one write port and one read port, both synchronous, filled from FILE by $readmemh when the device is
 // configured; undefined without a FILE. A ROM is one that is not WRITABLE.
 //
-// Latency: 1 cycle from read_address to read_data, held while read_enable is low. A word must not be used that is read
-// in the cycle in which it is written: what a block memory answers then differs from fabric to fabric, and a tool that
-// has to keep to one answer puts logic behind the memory. Simulations answer with the old word's complement.
+// Latency: 1 cycle from read_address to read_data, held while read_enable is low. A word that is read in the cycle of
+// its write must not be used. Block memories differ in what they answer then, and a tool that has to keep to one
+// answer adds logic. Simulations answer with the old word's complement.
 
 `default_nettype none
 

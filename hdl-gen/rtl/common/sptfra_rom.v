@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Read-only memory with a registered output, filled by $readmemh: up to 4,096 words from FILE, more in banks of as
-// many, each from a file of its own, bankNN_FILE.
+// Read-only memory with a registered output, filled by $readmemh. Up to 4,096 words come from FILE. More words stand
+// in banks of 4,096, each filled from bankNN_FILE.
 //
 // Latency: 1 cycle, held while enable is low. One read a cycle.
 //
-// A block memory holds 4,096 words of nine bits, its parity bits among them, and has no use for those where it holds
-// more words: banks take the fewest block memories, whatever a tool makes of deep ones. The banks' outputs are chosen
-// from by a register, in one LUT for three banks.
+// A block memory holds 4,096 words of nine bits with its parity bits, and deeper ones do not use these. So banks take
+// the fewest block memories. A register selects among the banks' outputs, in one LUT for three banks.
 
 `default_nettype none
 

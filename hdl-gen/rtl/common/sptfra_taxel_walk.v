@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Walks over the taxels of a grid, row by row, up to two at a step: says of each of which quad it is, and which member.
+// Raster counter over the taxels of a grid, up to two a step. It gives each taxel's quad and member.
 
 `default_nettype none
 

@@ -3,9 +3,8 @@
 //
 // Centroids of compression and tension, and the direction of the push d = c - t (Eq. 24), as a vector.
 //
-// Stresses come in as magnitudes; done follows the last one after 9 cycles and two divisions, one for each centroid's
-// two components, and d is there in the next cycle. Centroids have 20 fraction bits of a taxel index; d the same, in
-// units of the larger pitch.
+// Stresses come in as magnitudes. done follows the last one after 9 cycles and two divisions. d is there in the next
+// cycle. Centroids have 20 fraction bits of a taxel index; d the same, in units of the larger pitch.
 
 `default_nettype none
 

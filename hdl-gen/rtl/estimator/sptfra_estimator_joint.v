@@ -3,8 +3,8 @@
 //
 // Grid search estimator: friction pair (mu_x, mu_y) from the level set of Condition 1.
 //
-// Three stages, each with its own frame (sptfra_joint_stages): search (sptfra_grid_search), with NETWORK the feature
-// window (sptfra_features), and correction. u_q of the next frame may arrive meanwhile.
+// Three stages, each with its own frame (sptfra_joint_stages): search, feature window (with NETWORK) and correction.
+// u_q of the next frame may arrive meanwhile.
 
 `default_nettype none
 

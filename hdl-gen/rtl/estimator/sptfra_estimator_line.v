@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Estimator: friction on the line that the direction of the push allows (the paper's Algorithm 1).
+// Line search estimator: friction on the line that the direction of the push allows (the paper's Algorithm 1).
 //
-// Two stations, each with a frame of its own: the line in the (mu_x, mu_y) plane, then the search along it, which
-// begins when the frame's u_q are in its cells. The answer is the free component t, and the line, on which the other
-// one is other + slope * free.
+// Two stages, each with its own frame: the line in the (mu_x, mu_y) plane, then the search along it. The search
+// begins when the frame's u_q are in its cells. The answer is the free component t and the line: the other component
+// is other + slope * free.
 
 `default_nettype none
 

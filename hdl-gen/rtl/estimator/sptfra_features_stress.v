@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The stress of the normal forces alone, a quad in two cycles: n = u0 + mu_x u1 + mu_y u2 at the centroid of the level
-// set, a quarter as fine as u.
+// Stress of the normal forces alone, a quad in two cycles. n = u0 + mu_x u1 + mu_y u2 at the centroid of the level
+// set, with steps four times those of u.
 //
-// Out come n as a share of sum |b|, times 16, with 19 fraction bits, and the moments of the compression. From start to
-// done: two cycles a quad, and 10.
+// Outputs: 16 n as a share of sum |b|, with 19 fraction bits, and the moments of the compression. From start to done:
+// two cycles a quad, and 10.
 
 `default_nettype none
 

@@ -3,9 +3,10 @@
 //
 // A window of the taxels' shares around the contact, folded into parity classes: the words of the network.
 //
-// The centroid of the compression, to the next taxel, is the middle of a window of 2 HALF_X + 1 by 2 HALF_Y + 1 taxels.
-// A word of four classes for each of its places comes first; then follow 1, mu_x, mu_y and what is left of a pitch. All
-// have 19 fraction bits. From start to the first of them: 11 cycles; then one a cycle, the last with done.
+// The window has 2 HALF_X + 1 by 2 HALF_Y + 1 taxels about the taxel next to the centroid of the compression. A word
+// of four classes for each of its places comes first. Then follow 1, mu_x, mu_y and the centroid's distance from the
+// middle. All have 19 fraction bits. From start to the first of them: 11 cycles; then one a cycle, the last with
+// done.
 
 `default_nettype none
 

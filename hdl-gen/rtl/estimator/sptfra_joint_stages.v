@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Which frame is where in the grid search: three stages, each with a frame of its own.
+// Control of the grid search: three stages, each with a frame of its own.
 //
-// The search takes a frame a cycle after its u_q, its sums and what CeAn knows are there; the features what the search
-// has found, the correction what the features have. A stage holds what it found until the next one takes it, and may
-// begin anew in the cycle after; but the features show the correction their window first. Without features the
-// correction comes after the search.
+// The search takes a frame one cycle after its u_q, its sums and CeAn's results are there. The features take the
+// search's result, the correction that of the features. A stage holds its result until the next one takes it, and may
+// begin anew in the cycle after. The features show the correction their window first. Without features the correction
+// comes after the search.
 
 `default_nettype none
 

@@ -3,10 +3,11 @@
 //
 // The line in the (mu_x, mu_y) plane that the direction of the push allows (Eqs. 22 and 23, without poles).
 //
-// a mu_x + e mu_y = k with a = G11 d_y - G21 d_x, e = G12 d_y - G22 d_x, k = G20 d_x - G10 d_y. The component of
-// the larger of |d_x|, |d_y| becomes the free variable t; the other is c0 + c1 t. c0 and c1 have 15 fraction bits.
-// The sums are taken when they are complete, and held; the line follows 18 cycles and a division, which takes as many,
-// after both sums and direction are there.
+//     a mu_x + e mu_y = k;  a = G11 d_y - G21 d_x,  e = G12 d_y - G22 d_x,  k = G20 d_x - G10 d_y
+//
+// The component of the larger of |d_x|, |d_y| is the free variable t. The other component is c0 + c1 t, with 15
+// fraction bits in c0 and c1. Complete sums are held. Once sums and direction are there, the line follows after 18
+// cycles and a division.
 
 `default_nettype none
 

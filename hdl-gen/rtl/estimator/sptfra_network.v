@@ -3,10 +3,9 @@
 //
 // Network of the correction: one hidden layer of rectifiers (ReLU), then two sums, averaged over mirror images.
 //
-// The input stands in the basis of the parity classes, and so do the weights: one pass gives four classes' sums of
-// AT_ONCE hidden units, which a butterfly turns into the units of the four images, one after the other. PASSES passes
-// of LENGTH words, four MACs a unit. From start to done: a cycle for each word of each pass, one for each unit of one,
-// and 14.
+// Input and weights stand in the basis of the parity classes. One pass gives the four classes' sums of AT_ONCE hidden
+// units. A butterfly turns them into the units of the four images, one after the other. PASSES passes of LENGTH
+// words, four MACs a unit. From start to done: a cycle for each word of each pass, one for each unit of one, and 14.
 
 `default_nettype none
 

@@ -4,8 +4,8 @@
 // One cell of the search along the line: up to CELL_ELEMENTS taxels, one multiplier.
 //
 // Fill: u0, u1, u2 of its taxels arrive, also of the next frame while this one is searched. Passes: alpha = u0 + c0
-// u_dependent, then beta = u_free + c1 u_dependent. Search: for each taxel with alpha + t beta > 0 either beta (slope
-// of B) or alpha + t beta without its last 8 bits (B itself) is summed. Address to sum: 5 cycles; one taxel a cycle.
+// u_dependent, then beta = u_free + c1 u_dependent. Search: sums over the taxels with alpha + t beta > 0. The summand
+// is beta (slope of B), or alpha + t beta without its last 8 bits (B). Address to sum: 5 cycles; one taxel a cycle.
 // With three points also those at t - h and t - 2 h, h = 2^(15 - 2 round): a cycle more.
 
 `default_nettype none

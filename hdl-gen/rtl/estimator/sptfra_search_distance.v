@@ -3,8 +3,8 @@
 //
 // Distance that a bisection finds, highest bit first, one bit a round, or two with three points.
 //
-// A bit is kept where `keep` says so and the distance with it is less than `room`. A round's points lie at the distance
-// with the bit that is bisected (middle), with the next one too (above), and with the next one alone (below).
+// A bit is kept where `keep` is high and the distance with it is less than `room`. A round has up to three points:
+// with its bit (middle), with the next bit too (above), with the next bit alone (below).
 
 `default_nettype none
 

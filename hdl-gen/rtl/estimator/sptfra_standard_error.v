@@ -3,7 +3,7 @@
 //
 // Standard error of the tangential force over |F_z|, as a logarithm: model, noise and border, added as squares.
 //
-// s = |MODEL, NOISE largest / stress_sum, BORDER e|; e: share of the stress at the grid's border beyond 1/32.
+// s = |MODEL, NOISE largest / stress_sum, BORDER e|. e is the share of the stress at the grid's border beyond 1/32.
 // |x, y| is max(x, y, 7/8 of the larger + 1/2 of the smaller). No multiplier: each bit of a quotient adds its weight.
 // Latency: 54 cycles from start to the result, which holds until the next start.
 

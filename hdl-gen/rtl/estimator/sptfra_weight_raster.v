@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Double frame buffer of |w|, read in raster order, a taxel a cycle: whether a taxel is a seed (above a limit), and the
-// label of a component that would begin there. A step without a seed ends each row.
+// Double frame buffer of |w|, read in raster order, a taxel a cycle. A seed is a taxel above a limit; each comes with
+// the label that a component beginning there would get. A step without a seed ends each row.
 //
 // Latency from start to the first step: 5 cycles, then a step a cycle; weight is a cycle behind its step.
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Sums and differences of four numbers: out 0 = a + b + c + d, 1 = a - b + c - d, 2 = a + b - c - d, 3 = a - b - c + d.
+// Butterfly of four numbers: their sums and differences by parity.
+//
+//     0: a + b + c + d    1: a - b + c - d    2: a + b - c - d    3: a - b - c + d
 //
 // Folds the taxels of a quad into parity classes, and unfolds the classes into four times the taxels.
 //

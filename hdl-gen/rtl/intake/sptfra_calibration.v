@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The two banks of a calibration: which one acts, writes to the other, its CRC and the change to it, and tare.
+// Two banks of a calibration: the active one, writes to the other, commit with CRC, and tare.
 //
-// A bank's words are the taxels' gains, their offsets, the contact threshold and the noise floor, then what
-// sptfra_dead_bank has of dead taxels and sptfra_curve_bank of the curve. A commit reads the bank that does not act,
-// six cycles a word; if it has the CRC that the commit states, and does not contradict itself, it acts from the next
-// frame on. Tare writes the acting bank into the other one, with the mean stress taken off the offsets. What acts
-// outlives a reset: only the device's configuration brings the design's content back.
+// A bank holds the taxels' gains, their offsets, the contact threshold and the noise floor. The words of
+// sptfra_dead_bank and sptfra_curve_bank follow. A commit reads the other bank, six cycles a word. With the stated
+// CRC and without contradiction it is active from the next frame on. Tare writes the active bank into the other one,
+// with the mean stress taken off the offsets. The active bank outlives a reset: only the device's configuration
+// brings the design's content back.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Removes creep: what a taxel has crept by the frame before is taken off its reading, and goes on from there.
+// Correction of creep: each taxel's creep up to the frame before is subtracted from its reading.
 //
 // stress = reading - creep; creep += share * (strength * stress - creep). Reading to stress: 2 cycles; 7 to the creep
 // kept, before the next frame's first reading comes. It is double-buffered: a frame writes the spare bank, and a good

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Removes the crosstalk of a row-column array: a share of the sums of a taxel's row and column, and of the frame.
+// Correction of a row-column array's crosstalk: a share of the sums of a taxel's row and column, and of the frame.
 //
 // stress = reading - a P - b Q + d S: sums P of the row, Q of the column, S of the frame. A frame is kept while they
 // add up; then one multiplier makes a term of each sum, and the frame is read again. Last reading in to last one out:

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// What the two banks of a calibration say of the curve from counts to pascals. Words of a bank from FIRST on:
+// Curve from counts to pascals in two calibration banks. Words of a bank from FIRST on:
 //
 //     4 of each segment  number with which it begins, value there, slope, bits dropped behind the slope
 //     1                  count of segments; what stands in those behind it means nothing
 //     2                  number with which the last one ends, value there
 //
-// Words that are out of bounds are not written. While a commit reads the bank, what no word tells alone is checked, a
-// segment in the cycles of four words: numbers ascend, values only rise or only fall, and each slope leads from its
-// value to the next one's, within 2^-16 of the way and a step. So no value leaves its format.
+// Words that are out of bounds are not written. A commit checks what depends on several words, a segment in the
+// cycles of four words. Numbers ascend, and values only rise or only fall. Each slope leads from its value to the
+// next one's, within 2^-16 of the way and a step. So no value leaves its format.
 
 `default_nettype none
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Whether the segments of a curve go together: each is longer than nothing, its slope leads to the value of the next
-// one, and values only rise or only fall. One multiplication by two bits of the slope a cycle: 17 cycles from begins to
-// contradicts; the next segment's value is taken in the 12th.
+// Check of a curve's segments. None is empty, each slope leads to the next segment's value, and values only rise or
+// only fall. It multiplies by two bits of the slope a cycle. From begins to contradicts: 17 cycles; the next
+// segment's value is taken in the 12th.
 
 `default_nettype none
 

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// What the two banks of a calibration say of dead taxels: which they are, and the weight of every taxel in the stress
-// of each. Words of a bank from FIRST on:
+// Dead taxels and their weights in two calibration banks. Words of a bank from FIRST on:
 //
 //     1                  count of dead taxels in bits 3:0, fraction bits of the weights in bits 12:8
 //     REPLACEABLE        their numbers, ascending; those behind the count mean nothing
 //     TAXELS             of REPLACEABLE weights each, two's complement
 //
-// Words that are out of bounds are not written. While a commit reads the bank, what no word tells alone is checked:
-// numbers ascend, a dead taxel has no weight in any sum, and no sum's weights add up to more than its accumulator
-// takes.
+// Words that are out of bounds are not written. A commit checks what depends on several words. Numbers ascend, a dead
+// taxel has no weight in any sum, and no sum of weights exceeds its accumulator.
 
 `default_nettype none
 

@@ -3,10 +3,10 @@
 //
 // Fold: a frame's stresses, kept as they come, to the lanes' operand memories as four parity classes, or as they are.
 //
-// A quad is a taxel and its mirror images in x, in y and in both; class c of it is their sum with the signs of
-// parity: even and even, odd in x, odd in y, odd in both. One quad a cycle, those of the middle rows first: so the
-// last taxel of the frame belongs to the last quad. From a quad's turn to its write: 4 cycles, with SCALED 6.
-// A class has the bits of a stress and four times its step; or, where there is room for the sum of four, its step.
+// A quad is a taxel and its mirror images in x, in y and in both. Its class c is their sum with the signs of a
+// parity: even, odd in x, odd in y, odd in both. One quad a cycle, those of the middle rows first, so that the
+// frame's last taxel belongs to the last quad. From a quad's turn to its write: 4 cycles, with SCALED 6. A class has
+// the bits of a stress and four times its step; or, where there is room for the sum of four, its step.
 
 `default_nettype none
 

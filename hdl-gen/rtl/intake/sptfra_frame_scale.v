@@ -6,8 +6,8 @@
 // `whole` rises 5 cycles after the frame's last beat. The exponent is there two cycles later and held. Both are later
 // by the logarithm of the samples of a beat.
 //
-// All behind the operand memories is homogeneous. So the scaled frame has the friction of the frame, and forces that
-// are larger by its power of two. sptfra_frame_context keeps that for the output.
+// All behind the operand memories is homogeneous. So the scaled frame has the same friction, and forces larger by its
+// power of two. sptfra_frame_context keeps that for the output.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Replaces a frame's dead taxels: each takes a weighted sum of the other taxels in place of its own reading.
+// Replacement of dead taxels: each reading becomes a weighted sum of the other taxels.
 //
 // A frame is kept while one accumulator for each place adds up its sum, then read again with the sums in theirs. Last
 // reading in to first one out: 7 cycles. `busy` keeps the next frame back until the last one is out. A frame comes out

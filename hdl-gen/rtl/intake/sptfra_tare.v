@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Tare: the mean stress of each taxel over 2^log2_frames frames, and whether they look like rest: none was clipped, no
-// number or of another length, and no taxel's stress spread by more than most_spread.
+// Tare: mean stress of each taxel over 2^log2_frames frames, and whether they are steady. Steady frames are whole,
+// hold numbers that are not clipped, and spread by at most most_spread on each taxel.
 //
-// A taxel's sum and extremes are read two cycles before its next stress is there, and written with it: a frame has four
+// A taxel's sum and extremes are read two cycles before its next stress and written with it. So a frame has four
 // taxels at least. A mean is there three cycles after mean_taxel.
 
 `default_nettype none

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Sends a frame: sixteen words of its summary, with FIELD then f_x, f_y, f_z of each taxel, float32.
+// Output packet of a frame: sixteen words of its summary, with FIELD then f_x, f_y, f_z of each taxel, float32.
 //
 // | word    | content                                                                      |
 // |---------|------------------------------------------------------------------------------|
@@ -15,9 +15,9 @@
 // | 13      | contacts in bits 7:0, version of the calibration 15:8, replaced taxels 23:16 |
 // | 14, 15  | 0                                                                            |
 //
-// A beat of WORDS words a cycle while the sink takes them, the first word in the lowest bits; the first beat 13 cycles
-// after start. Frames without an answer send zeros but for words 0, 1 and 13; zeros fill the last beat. Taxels' forces
-// come from the field memory as they go out.
+// One beat of WORDS words a cycle while the sink takes them, the first word in the lowest bits. The first beat comes
+// 13 cycles after start. Frames without an answer send zeros but for words 0, 1 and 13. Zeros fill the last beat.
+// Taxels' forces come from the field memory as they go out.
 
 `default_nettype none
 

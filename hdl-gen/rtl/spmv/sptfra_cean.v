@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// CeAn: what a frame's stress b says at first sight, for Op: how much there is, and where the push goes (Eq. 24).
+// CeAn: sums of a frame's stress b and, with DIRECTION, the direction of the push (Eq. 24), for Op.
 //
-// Stresses come in one a cycle, taxel by taxel in rows; the result follows 4 cycles after the last one, or, with
-// DIRECTION, after 12 and the two divisions of sptfra_direction. The results of up to two frames wait for Op.
+// Stresses come in one a cycle, taxel by taxel in rows. The result follows 4 cycles after the last one, with
+// DIRECTION 12 and two divisions. The results of up to two frames wait for Op.
 
 `default_nettype none
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Co: the sums G_pq of the coefficient vectors over the frame (Eqs. 11 to 13), those of their torques about the middle
-// of the grid, and what of the results the lanes multiply again.
+// Co: sums G_pq of the coefficient vectors over the frame (Eqs. 11 to 13) and of their torques about the grid's
+// middle. It also selects the results that the lanes multiply again.
 //
-// Of a folded grid the sums are dot products of y+ and |w| with constant rows, which the lanes compute; what is left of
-// the stress for the field passes through to the operand memories, in 1 cycle. Where taxels are not folded, the
+// Of a folded grid the sums are dot products of y+ and |w| with constant rows, which the lanes compute. The residual
+// stress for the field passes through to the operand memories in 1 cycle. Where taxels are not folded, the
 // coefficient vectors themselves come, see sptfra_coefficients. The array adds one cycle.
 
 `default_nettype none

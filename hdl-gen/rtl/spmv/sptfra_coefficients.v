@@ -3,9 +3,9 @@
 //
 // Coefficient vectors g_pq (Eqs. 11 to 13), their sums over the frame and those of their torques, taxel by taxel.
 //
-// A_p b waits in a memory of its own until D_p0 w arrives; every finished g goes to the field memory, into the sum
-// G_pq, times the taxel's arms into the torques' sums, and, where the lanes multiply it again, to the operand memories.
-// Result bus to g: 3 cycles; to a torque's sum: 6.
+// A_p b waits in a memory of its own until D_p0 w arrives. Every finished g goes to the field memory, into the sum
+// G_pq and, times the taxel's arms, into the torques' sums. Where the lanes multiply g again, it goes to the operand
+// memories too. Result bus to g: 3 cycles; to a torque's sum: 6.
 
 `default_nettype none
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The field memory of a folded grid, and the forces as they leave it: f = A+ r + [mu_x |w|, mu_y |w|, -|w|] of every
-// taxel, WORDS components a cycle in the order of the output: x, y, z, taxel by taxel.
+// Field memory of a folded grid, with the forces f = A+ r + [mu_x |w|, mu_y |w|, -|w|] of every taxel at its output.
+// WORDS components leave it a cycle in the order of the output: x, y, z, taxel by taxel.
 //
-// Written a quad at a time. Two frames of A_p r, four of |w|, which is there long before it is needed. Up to four
-// components are those of two neighbours at most, of which each has a copy of the memory. From step to forces: 6
-// cycles, with several words 7.
+// It is written a quad at a time. It holds A_p r of two frames and |w|, which comes long before its use, of four. Up
+// to four components belong to two neighbours at most; each has a copy of the memory. From step to forces: 6 cycles,
+// with several words 7.
 
 `default_nettype none
 

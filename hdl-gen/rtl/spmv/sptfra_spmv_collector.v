@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Takes one result a cycle from the lanes and puts it on the result bus, rounded.
+// Collector of the lanes' results: takes one a cycle, rounds it and puts it on the result bus.
 //
 // Take to bus: 3 cycles. Rounding: add half a step, drop the bits below. The order in which results become ready is
-// fixed, so a ROM says from which lane to take the next one, what becomes of it, and which row it is:
-// {last of its program, lane, destination, row}.
+// fixed. So a ROM holds the lane, the destination and the row of each: {last of its program, lane, destination, row}.
 //
 // | destination | four ways: parity classes    | one way: taxels                      |
 // |-------------|------------------------------|--------------------------------------|

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Walks through the sparse products of a program in their fixed order and at their fixed times.
+// Sequencer of a program's sparse products, in their fixed order and at their fixed times.
 //
 // A start pulse runs one program: products that follow each other at fixed distances. issued marks the last issue of a
 // program. The next start may come in the cycle after that. The tables describe the products: number 0 stands in the

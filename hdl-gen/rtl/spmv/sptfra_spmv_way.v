@@ -3,10 +3,9 @@
 //
 // Multiply-accumulate lane of a PE, with the carry of a row that is cut in two and two places for finished sums.
 //
-// Coefficients of up to 18 and operands of up to 27 bits take one multiplier; wider ones take two, whose sums are of
-// products over 2^17, rounded. There coefficients and friction components stand in the upper bits of theirs, so that of
-// short ones little or nothing is dropped.
-// Operands to accumulator: 3 cycles; accumulator to result: 1. Initiation interval: 1.
+// Coefficients of up to 18 and operands of up to 27 bits take one multiplier. Wider ones take two, and sum products
+// over 2^17, rounded. There coefficients and friction components are left-aligned, so that short ones lose little or
+// nothing. Operands to accumulator: 3 cycles; accumulator to result: 1. Initiation interval: 1.
 
 `default_nettype none
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Whose turn the lanes are: starts the programs of the frames under way.
+// Program scheduler: starts the lanes' programs of the frames under way.
 //
-// A frame's first program gives its weights and what its search needs. Where a field is put together in the lanes, the
-// second gives what is left of the stress for it, and the third, once the search has found the friction, the field. A
-// program starts in the cycle after the last issue of the one before, if its data are there.
+// A frame's first program gives its weights and the inputs of its search. With a field in the lanes, the second gives
+// the residual stress. The third gives the field, once the search has found the friction. A program starts in the
+// cycle after the last issue of the one before, if its data are there.
 
 `default_nettype none
 

@@ -165,7 +165,7 @@ fn verify(
     let [error, fit] = [errors, fits].map(middle);
     if error > 2.0 * fit + APART {
         return Err(wrong(format!(
-            "solved with the constants found, the recording's loads err by {:.1} % in the median, and they were fitted to \
+            "solved with the constants found, the recording's loads have a median error of {:.1} %, and they were fitted to \
              {:.1} %",
             100.0 * error,
             100.0 * fit

@@ -113,7 +113,7 @@ pub(super) fn fit(
     design.algorithm.joint.friction_correction = constants;
     let [c1, c3] = constants;
     Ok(Verdict::Fitted(format!(
-        "friction: friction_correction = [{c1:.3}, {c3:.3}]; (F_x, F_y) err by {:.1} % of F_z where left out, {:.1} % before (root mean square of {} holds)",
+        "friction: friction_correction = [{c1:.3}, {c3:.3}]; (F_x, F_y) have an error of {:.1} % of F_z where left out, {:.1} % with the old constants (root mean square of {} holds)",
         100.0 * now,
         100.0 * as_it_was,
         samples.len()

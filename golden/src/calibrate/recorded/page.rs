@@ -127,7 +127,8 @@ fn loads(found: &Recorded, unit: &str) -> String {
 
 fn curve(found: &Recorded) -> String {
     let largest = found.points.iter().fold([0.0_f64; 2], |most, point| [most[0].max(point[0]), most[1].max(point[1])]);
-    let mut plot = Plot::new("What a count means, gain 1", ["counts above rest", "pascals that press"], largest);
+    let mut plot =
+        Plot::new("What a count means, gain 1", ["counts above the unloaded reading", "pascals that press"], largest);
     plot.line(found.points.iter().copied(), "#c0552b");
     plot.svg()
 }
@@ -148,7 +149,7 @@ fn gains(found: &Recorded, sensor: &Sensor) -> String {
             cells,
             "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{side:.1}\" height=\"{side:.1}\" fill=\"{colour}\" stroke=\"#ddd\"><title>taxel {taxel}: {:.3}{}</title></rect>",
             gain.gain,
-            if gain.told { "" } else { ", not told" }
+            if gain.told { "" } else { ", not determined" }
         );
         if !gain.told {
             let _ = writeln!(
@@ -159,7 +160,7 @@ fn gains(found: &Recorded, sensor: &Sensor) -> String {
     }
     let [width, height] = [side * sensor.columns as f64, side * sensor.rows as f64];
     format!(
-        "<svg width=\"{0:.0}\" height=\"{1:.0}\" role=\"img\">\n<text x=\"0\" y=\"18\">Gains: blue {2:.2} to red {3:.2}; crossed: not told</text>\n\
+        "<svg width=\"{0:.0}\" height=\"{1:.0}\" role=\"img\">\n<text x=\"0\" y=\"18\">Gains: blue {2:.2} to red {3:.2}; crossed: not determined</text>\n\
          <g transform=\"translate(0 28)\">\n{cells}</g></svg>\n",
         width.max(290.0),
         height + 32.0,

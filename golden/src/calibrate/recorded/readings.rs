@@ -163,7 +163,7 @@ impl Readings {
             ));
         } else if let Some(floor) = floor.filter(|&floor| floor > was && floor < 0.1 * full_scale) {
             remarks.push(format!(
-                "algorithm.noise_floor_pa is {floor:.1} now, it was {was:.1}: {QUIET} deviations of the frames without load"
+                "algorithm.noise_floor_pa is set from {was:.1} to {floor:.1}: {QUIET} standard deviations of the frames without load"
             ));
             calibrated.algorithm.noise_floor_pa = floor;
         }
@@ -204,7 +204,7 @@ fn full_scale(design: &Design, largest: f64, remarks: &mut Vec<String>) -> f64 {
     let digits = 10_f64.powf(needed.log10().floor() - 1.0);
     let now = ((needed / digits).ceil() * digits).clamp(1e-3, 1e9);
     remarks.push(format!(
-        "hardware.full_scale_pa is {now:.0} now, it was {was:.0}: the largest stress recorded is {largest:.0} Pa"
+        "hardware.full_scale_pa is set from {was:.0} to {now:.0}: the largest stress recorded is {largest:.0} Pa"
     ));
     now
 }

@@ -134,17 +134,17 @@ fn force(recorded: &mut Recorded, facts: &Facts<'_>) {
         };
         let Folds { what, groups, .. } = folds;
         let words = errors.words();
-        recorded.determined.push(format!("F_z: errs by {words} at {what} left out, {groups} in turn{better}"));
+        recorded.determined.push(format!("F_z: error {words}, at {what} left out ({groups} in turn){better}"));
     } else {
-        recorded.determined.push("common gain: one factor for all, so that the loads are right in the mean".to_owned());
+        recorded.determined.push("common gain: one factor for all taxels, from the mean of the loads".to_owned());
         recorded.undetermined.push(
-            "errors: too few places and loads to leave any out, so nothing is checked; record at least four places"
+            "errors: not checked, because too few places and loads are there to leave any out; record at least four places"
                 .to_owned(),
         );
     }
     if recorded.places < 4 && facts.folds.is_some() {
         recorded.undetermined.push(format!(
-            "other places: all contacts are at {}; what taxels elsewhere read is not known",
+            "other places: all contacts are at {}; taxels elsewhere were not measured",
             if recorded.places == 1 { "one place".to_owned() } else { format!("{} places", recorded.places) }
         ));
     }
@@ -171,9 +171,11 @@ fn curve(recorded: &mut Recorded, facts: &Facts<'_>) {
     }
     let line = match &facts.found.shape {
         Shape::Own(factor) => {
-            format!("curve: the design's own, times {:.3}; nothing that was tried is better", factor.abs())
+            format!("curve: the design's own, times {:.3}; no other shape has a smaller error", factor.abs())
         }
-        Shape::Line(slope) => format!("curve: a straight line, {slope:.4} Pa a count; nothing that bends is better"),
+        Shape::Line(slope) => {
+            format!("curve: a straight line, {slope:.4} Pa a count; no bent curve has a smaller error")
+        }
         Shape::Power { power, scale, .. } => {
             // Before a gain of their own, and but for noise.
             let count = match (facts.work.readings.sign * facts.work.readings.base).round() {
@@ -188,9 +190,9 @@ fn curve(recorded: &mut Recorded, facts: &Facts<'_>) {
     match (&facts.found.shape, &recorded.design.input.curve) {
         (Shape::Own(_) | Shape::Line(_), _) => {}
         (_, Some(Curve { law: Some(_), .. })) => {
-            recorded
-                .remarks
-                .push(format!("the power law goes on beyond the {top:.0} counts above rest that were recorded"));
+            recorded.remarks.push(format!(
+                "the power law goes on beyond the {top:.0} counts above the unloaded reading that were recorded"
+            ));
         }
         _ => recorded.undetermined.push(format!(
             "curve: counts of more than {top:.0} above rest were not recorded: there it ends, and such frames are \
@@ -220,10 +222,10 @@ fn gains(recorded: &mut Recorded, facts: &Facts<'_>) {
     let Some(prior) = facts.prior else {
         let why = match facts.folds {
             Some(folds) if folds.what == "places" && recorded.places >= 6 => {
-                "taxels' own gains do not make loads at other places righter".to_owned()
+                "taxels' own gains do not reduce the error at other places".to_owned()
             }
             _ => format!(
-                "contacts at {} place{} do not tell taxels apart",
+                "contacts at {} place{} do not determine single taxels",
                 recorded.places,
                 if recorded.places == 1 { "" } else { "s" }
             ),
@@ -242,22 +244,22 @@ fn gains(recorded: &mut Recorded, facts: &Facts<'_>) {
     if let Some([differ, apart]) = facts.halves {
         let _ = write!(
             line,
-            "; they differ by {:.1} %, and those from either half of the recording from each other by {:.1} %",
+            "; they differ by {:.1} %, gains from the two halves of the recording by {:.1} %",
             100.0 * differ,
             100.0 * apart
         );
         if apart > 0.7 * differ {
-            line.push_str(": a trend more than each taxel's own");
+            line.push_str(": a trend rather than each taxel's own gain");
         }
     }
     recorded.determined.push(line);
     let hardly = count - told - untouched.len();
     if hardly > 0 {
-        recorded.undetermined.push(format!("gains: {hardly} of {count} taxels are told by less than what was assumed of them; they are drawn towards the others"));
+        recorded.undetermined.push(format!("gains: {hardly} of {count} taxels had too little load to determine theirs; they are drawn towards the others"));
     }
     if !untouched.is_empty() {
         recorded.undetermined.push(format!(
-            "gains: no contact was on {} of {count} taxels ({}): theirs stay as they were",
+            "gains: no contact was on {} of {count} taxels ({}): their gains are unchanged",
             untouched.len(),
             list(&untouched)
         ));

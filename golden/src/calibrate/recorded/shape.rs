@@ -39,7 +39,7 @@ pub(super) enum Shape {
     Line(f64),
     /// `scale * count^power`, counts from the base on; up to `straight` a line, so that noise around rest stays noise.
     Power { power: f64, scale: f64, straight: f64 },
-    /// Knots in counts above rest, from 0 on, and the pascals of a count between them.
+    /// Knots in counts above the unloaded reading, from 0 on, and the pascals of a count between them.
     Pieces { knots: Vec<f64>, slopes: Vec<f64> },
 }
 

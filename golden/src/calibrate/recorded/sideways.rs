@@ -59,8 +59,8 @@ pub(super) fn fit(
     let mut holds = holds::part(design, frames, &measured).map_err(wrong)?;
     remarks.append(&mut holds.remarks);
     remarks.push(
-        "friction is a share of F_z, and that is what the design finds: what its curve and gains err by, the constants err \
-         by. Measure F_z too, or check it with a weight"
+        "friction is a share of the F_z that the design finds: errors of its curve and gains become errors of the constants. \
+         Measure F_z too, or check it with a weight"
             .to_owned(),
     );
     let taxels = design.sensor.taxels();

@@ -233,11 +233,11 @@ fn say(recorded: &mut Recorded, (kinds, kind, shape): (&[Kind], Kind, &Shape), l
         let squares: f64 = recorded.gains.iter().filter(|gain| gain.told).map(|gain| (gain.gain - 1.0).powi(2)).sum();
         100.0 * (squares / living as f64).sqrt()
     };
-    recorded
-        .determined
-        .push(format!("gains: all {living} living taxels; they differ by {spread:.1} % (standard deviation)"));
+    recorded.determined.push(format!(
+        "gains: all {living} taxels that are not dead; they differ by {spread:.1} % (standard deviation)"
+    ));
     match &recorded.errors {
-        Some(errors) => recorded.determined.push(format!("pressure: a taxel errs by {} at pressures left out in turn", errors.words())),
+        Some(errors) => recorded.determined.push(format!("pressure: error of a taxel {}, at pressures left out in turn", errors.words())),
         None => recorded.undetermined.push(format!("errors: {levels} pressures are too few to leave any out, so nothing is checked; record at least three, better ten")),
     }
     if kinds.len() == 1 {
@@ -261,7 +261,9 @@ fn say(recorded: &mut Recorded, (kinds, kind, shape): (&[Kind], Kind, &Shape), l
             100.0 * border
         ));
     }
-    recorded.undetermined.push("forces: uniform pressure tells nothing of how the sensor finds a force; check with a weight (--frames and --forces)".to_owned());
+    recorded
+        .undetermined
+        .push("forces: uniform pressure does not check forces; check with a weight (--frames and --forces)".to_owned());
 }
 
 /// By how much the taxels at the border read less.

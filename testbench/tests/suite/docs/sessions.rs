@@ -126,7 +126,7 @@ fn the_session_of_the_readme_does_what_it_says() {
         count += 1;
     }
     assert_eq!(count, 6, "lines were run");
-    for name in ["my_sensor.toml", "my_sensor.calibration.csv", "forces.csv", "my_core/rtl/trained.v"] {
+    for name in ["my_sensor.toml", "my_sensor.tare.csv", "forces.csv", "my_core/rtl/trained.v"] {
         assert!(session.file(name).exists(), "no {name}");
     }
     assert!(said.contains("Bit-exact in all 4 stream modes"), "the simulation's verdict:\n{said}");
