@@ -44,11 +44,11 @@ fn says_what_the_references_say() -> Result<(), CoreError> {
     let cores = print_all()?;
     for (path, said) in [
         ("sptfra_row_sequencer.v", format!("macs[{}:0]", row_sequencer::MACS_BITS - 1)),
-        ("sptfra_divider.v", format!("in cycle {};", divider::LATENCY)),
-        ("sptfra_cordic.v", format!("in cycle {};", cordic::LATENCY)),
+        ("sptfra_divider.v", format!("in cycle {}.", divider::LATENCY)),
+        ("sptfra_cordic.v", format!("in cycle {}.", cordic::LATENCY)),
         ("sptfra_cordic.v", format!("{} fraction bits", cordic::ANGLE_FRACTION_BITS)),
         ("sptfra_cordic.v", format!("{} micro-rotations", cordic::ITERATIONS)),
-        ("sptfra_cordic.v", format!("the magnitude {}", cordic::CORDIC_GAIN)),
+        ("sptfra_cordic.v", format!("times {}", cordic::CORDIC_GAIN)),
         ("sptfra_float_to_fixed.v", format!("Latency {} enabled cycles", float_to_fixed::LATENCY)),
         ("sptfra_float_to_fixed.v", format!("to {}-bit fixed point", float_to_fixed::FIXED_BITS)),
         ("sptfra_fixed_to_float.v", format!("Latency {} enabled cycles", fixed_to_float::LATENCY)),

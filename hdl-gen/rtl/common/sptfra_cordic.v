@@ -4,9 +4,9 @@
 // Vectoring CORDIC: magnitude (34 bits) and angle (32 bits) of (x, y), components within +-2^30.
 //
 // 30 micro-rotations, two cycles each. A start in cycle 0 gives done for one cycle in cycle 62. A new start is taken
-// from then on. The angle is atan2(y, x) in radians with 29 fraction bits. The magnitude is the length times
-// 1.6467602581210654 (the CORDIC gain), in units of x and y. For max(|x|, |y|) >= 2^29 the angle is within 2^-26 rad
-// and the magnitude within 2^-26 of itself; (0, 0) gives zeros.
+// from then on. The angle is atan2(y, x) in radians with 29 fraction bits. The magnitude is the length
+// times 1.6467602581210654 (the CORDIC gain), in units of x and y. For max(|x|, |y|) >= 2^29 the angle is within
+// 2^-26 rad and the magnitude within 2^-26 of itself; (0, 0) gives zeros.
 
 `default_nettype none
 

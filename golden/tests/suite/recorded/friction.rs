@@ -56,7 +56,7 @@ fn tangential_forces_tell_the_constants_of_friction() {
         alone.undetermined
     );
     assert!(says(&alone.undetermined, &["F_z, curve and gains: no normal force is known"]), "{:?}", alone.undetermined);
-    assert!(says(&alone.remarks, &["friction is a share of F_z", "check it with a weight"]), "{:?}", alone.remarks);
+    assert!(says(&alone.remarks, &["friction is a share of the F_z", "check it with a weight"]), "{:?}", alone.remarks);
     let mut unchanged = alone.design.clone();
     unchanged.algorithm.joint.friction_correction = [2.0, 0.0];
     assert_eq!(unchanged, before);
