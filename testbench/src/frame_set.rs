@@ -75,11 +75,13 @@ impl FrameSet {
         design: &Design,
     ) -> Result<Self, FrameError> {
         geometry::compare(frames, &design.name, &design.sensor)?;
-        let Frames { frames: stress, remark, .. } = read_recording(frames, design, layout)?;
+        let recording = read_recording(frames, design, layout)?;
         if let Some(reference) = reference {
             forces::compare_sensor(reference, &design.name, &design.sensor)?;
         }
-        let truth = reference.map(|path| read_outcomes(path, stress.len())).transpose()?;
+        let truth = reference.map(|path| read_outcomes(path, recording.count())).transpose()?;
+        let truth = truth.map(|truth| recording.kept(truth));
+        let Frames { frames: stress, remark, .. } = recording;
         Ok(Self { origin: frames.display().to_string(), stress, truth, remark, scene: None })
     }
 }

@@ -104,22 +104,27 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
     let mut findings = Vec::new();
     for (place, (file, measured)) in [(uniform, pressures), (frames, forces)].into_iter().enumerate() {
         let (Some(file), Some(measured)) = (file, measured) else { continue };
-        let Frames { mut frames, times, .. } = Recording { file, layout: layout.layout() }.read_all(&design)?;
+        let mut recording = Recording { file, layout: layout.layout() }.read_all(&design)?;
+        let (frames, times) = (&mut recording.frames, recording.times.as_deref());
         if let Some(creep) = &creep {
             // The recording may have another rate than the frames to come.
-            let interval = times.as_deref().map(creep::interval).transpose();
+            let interval = times.map(creep::interval).transpose();
             let interval = interval.map_err(|problem| format!("{}: {problem}", file.display()))?;
             let rate = interval.map_or(creep.frames_per_second, |interval| 1.0 / interval);
-            Creep { frames_per_second: rate, ..*creep }.remove_from_recording(&design, &mut frames);
+            Creep { frames_per_second: rate, ..*creep }.remove_from_recording(&design, frames);
         }
         let table = if place == 0 { read_pressures(measured) } else { read_forces(measured) }?;
-        let paired = times.map_or(Ok(table.clone()), |times| table.at(&times));
-        let table = paired.map_err(|problem| format!("{}: {problem}", measured.display()))?;
+        let table = match times {
+            Some(times) if table.times.is_some() => table.at(times),
+            _ => Ok(table.of(&recording)),
+        };
+        let (frames, table) =
+            (&recording.frames, table.map_err(|problem| format!("{}: {problem}", measured.display()))?);
         let found =
-            if place == 0 { fit_uniform(&design, &frames, &table) } else { fit_forces(&design, &frames, &table) }?;
+            if place == 0 { fit_uniform(&design, frames, &table) } else { fit_forces(&design, frames, &table) }?;
         // As the design reads them now: sign, unit and tare are what was fitted. A bladder loads every taxel.
         if place == 1 {
-            findings = check(&found.design, &frames, Matrices::of(&found.design).ok().as_ref());
+            findings = check(&found.design, frames, Matrices::of(&found.design).ok().as_ref());
         }
         design = found.design.clone();
         results[place] = Some(found);

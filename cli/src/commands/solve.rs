@@ -89,16 +89,19 @@ pub fn run(args: &Args) -> message::Result {
     let inputs = [Some(design.as_path()), Some(frames.file), reference].into_iter().flatten();
     keep_apart(out, &inputs.chain(named.iter().map(AsRef::as_ref)).collect::<Vec<_>>())?;
     let design = Design::load(design)?;
-    let frames = frames.read(&design)?;
+    let recording = frames.read_all(&design)?;
+    let frames = &recording.frames;
     if let Some(reference) = reference {
         forces::compare_sensor(reference, &design.name, &design.sensor)?;
     }
-    let truth = reference.map(|path| forces::read_outcomes(path, frames.len())).transpose()?;
+    let truth = reference.map(|path| forces::read_outcomes(path, recording.count())).transpose()?;
+    let truth = truth.map(|truth| recording.kept(truth));
     let contacts = reference
         .filter(|_| design.algorithm.contacts > 1)
-        .map(|path| forces::read_contacts(path, frames.len(), &design.sensor))
+        .map(|path| forces::read_contacts(path, recording.count(), &design.sensor))
         .transpose()?
-        .flatten();
+        .flatten()
+        .map(|contacts| recording.kept(contacts));
     if let Some(thin) = design.thin_layer() {
         eprintln!("warning: {thin}");
     }
@@ -113,7 +116,7 @@ pub fn run(args: &Args) -> message::Result {
     }
     drop(progress);
     forces::write_solutions(out, &solutions, *field)?;
-    warn(&check(&design, &frames, Some(solver.matrices())));
+    warn(&check(&design, frames, Some(solver.matrices())));
 
     let report = SolveReport {
         design: &design.name,

@@ -37,8 +37,27 @@ pub struct Frames {
     pub frames: Vec<Vec<f64>>,
     /// The time of each frame in seconds, where the file's header names a column of times before the values.
     pub times: Option<Vec<f64>>,
+    /// Frames that were left out (`--skip-bad`), by their place among all in the file, from 0.
+    pub skipped: Vec<usize>,
     /// What was taken for what, on one line.
     pub remark: Option<String>,
+}
+
+impl Frames {
+    /// Frames of the file, those that were left out among them.
+    pub fn count(&self) -> usize {
+        self.frames.len() + self.skipped.len()
+    }
+
+    /// The lines of a file that has one for each frame, without those of frames that were left out. It stays as it is if it
+    /// has none of these.
+    pub fn kept<T>(&self, lines: Vec<T>) -> Vec<T> {
+        if lines.len() == self.frames.len() {
+            return lines;
+        }
+        let is_kept = |place: &usize| self.skipped.binary_search(place).is_err();
+        lines.into_iter().enumerate().filter(|(place, _)| is_kept(place)).map(|(_, line)| line).collect()
+    }
 }
 
 /// Reads all frames of a file; each has a finite value for each taxel of the sensor. The values stand where `layout` says: a
@@ -70,7 +89,8 @@ fn read_text(path: &Path, layout: &Layout, target: &Target) -> Result<Text, Fram
 ///
 /// As [`read_frames`].
 pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -> Result<Frames, FrameError> {
-    let Text { rows: frames, lines, labels, order, times, remarks } = read_text(path, &layout.into(), &design.into())?;
+    let Text { rows: frames, lines, labels, order, times, skipped, remarks } =
+        read_text(path, &layout.into(), &design.into())?;
     let samples = design.hardware.samples;
     let wrong = |values: &Vec<f64>| values.iter().position(|&value| !samples.takes(value));
     let found = frames.iter().enumerate().find_map(|(frame, values)| Some((frame, wrong(values)?)));
@@ -78,7 +98,7 @@ pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -
         let remark = (!remarks.is_empty()).then(|| remarks.join("; "));
         // A header of numbers has no time, and a bad line has one.
         let times = times.filter(|times| times.len() == frames.len() && times.iter().all(|time| time.is_finite()));
-        return Ok(Frames { frames, times, remark });
+        return Ok(Frames { frames, times, skipped, remark });
     };
     let place = match lines.get(frame) {
         Some(line) => format!("line {line}, column {}", text::column(labels, order.as_deref(), column)),
@@ -136,7 +156,7 @@ fn read_table(
         }
         match values.iter().position(|value| !is_number(*value)) {
             None => text.rows.push(values),
-            Some(_) if layout.skip_bad => {}
+            Some(_) if layout.skip_bad => text.skipped.push(row),
             Some(column) => {
                 let value = values[column];
                 return Err(wrong(format!(

@@ -27,6 +27,8 @@ pub(super) struct Text {
     pub(super) order: Option<Vec<usize>>,
     /// The time of each row in seconds, where the header names such a column.
     pub(super) times: Option<Vec<f64>>,
+    /// Rows that were left out, by their place among all, from 0.
+    pub(super) skipped: Vec<usize>,
     pub(super) remarks: Vec<String>,
 }
 
@@ -65,7 +67,7 @@ pub(super) struct Lines {
     /// Cells of a line that has blank ones behind its last value.
     padded: Option<usize>,
     /// Lines that were left out, and what was wrong with the first.
-    bad: Option<(usize, String)>,
+    bad: Option<(Vec<usize>, String)>,
     remarks: Vec<String>,
 }
 
@@ -103,8 +105,10 @@ impl Lines {
     /// What is to be said of the lines so far.
     pub(super) fn remarks(&self) -> Vec<String> {
         let path = self.path.display();
-        let bad =
-            self.bad.as_ref().map(|(count, first)| format!("{path}: {count} lines are left out; the first: {first}"));
+        let bad = self
+            .bad
+            .as_ref()
+            .map(|(bad, first)| format!("{path}: {} lines are left out; the first: {first}", bad.len()));
         let last = self.labels() + self.target.as_ref().map_or(0, |target| target.sensor.taxels());
         let padded = self.padded.map(|_| format!("{path}: cells behind column {last} are blank, and are none"));
         let named = self.header.remarks.iter().map(|remark| format!("{path}, line {}: {remark}", self.header.line));
@@ -204,7 +208,7 @@ impl Lines {
         match self.values(separator, content, wrong_length) {
             Ok(row) => Ok(Some(row)),
             Err(error) if self.layout.skip_bad => {
-                self.bad.get_or_insert_with(|| (0, error.to_string())).0 += 1;
+                self.bad.get_or_insert_with(|| (Vec::new(), error.to_string())).0.push(self.number);
                 Ok(None)
             }
             Err(error) => Err(error),
@@ -471,6 +475,9 @@ pub(super) fn read(
     text.order = lines.header.order.take();
     text.labels = lines.labels();
     text.remarks = lines.remarks();
+    let bad = lines.bad.map_or(Vec::new(), |(bad, _)| bad);
+    let place = |(before, line): (usize, &usize)| before + text.lines.partition_point(|kept| kept < line);
+    text.skipped = bad.iter().enumerate().map(place).collect();
     Ok(text)
 }
 

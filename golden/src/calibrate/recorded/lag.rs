@@ -1,7 +1,7 @@
 //! The lag between two logs that do not begin together, by cross-correlation of the readings' sum with the load.
 
 /// A lag is another one if it leaves more than so many times the variance of the best.
-const APART: f64 = 2.0;
+pub(super) const APART: f64 = 2.0;
 /// A lag is used only if it explains this share of the variance.
 const EXPLAINS: f64 = 0.7;
 /// Fewer frames tell no lag.
@@ -11,12 +11,12 @@ const SHARE: usize = 4;
 /// Products at most.
 const WORK: usize = 20_000_000;
 
-/// By how many frames the loads come late, 0 where that is as good as any.
+/// By how many frames the loads come late, 0 where that is as good as any: where it leaves at most `apart` times the variance.
 ///
 /// # Errors
 ///
 /// Two lags that are as good as each other, and better than none.
-pub(super) fn find(readings: &[f64], loads: &[Option<f64>]) -> Result<isize, [isize; 2]> {
+pub(super) fn find(readings: &[f64], loads: &[Option<f64>], apart: f64) -> Result<isize, [isize; 2]> {
     let count = readings.len().min(loads.len());
     if count < FRAMES {
         return Ok(0);
@@ -25,7 +25,7 @@ pub(super) fn find(readings: &[f64], loads: &[Option<f64>]) -> Result<isize, [is
     let left: Vec<f64> = (-farthest..=farthest).map(|lag| unexplained(readings, loads, lag)).collect();
     let zero = farthest as usize;
     let best = (0..left.len()).fold(zero, |best, lag| if left[lag] < left[best] { lag } else { best });
-    let alike = |lag: usize| left[lag] <= APART * left[best];
+    let alike = |lag: usize| left[lag] <= apart * left[best];
     if left[best] > 1.0 - EXPLAINS || alike(zero) {
         return Ok(0);
     }

@@ -9,6 +9,10 @@ use crate::numbers::{magnitude, middle, sorted};
 pub(super) const REST: f64 = 0.01;
 /// Lines of the forces may be so much more or fewer than the frames.
 const LENGTHS: f64 = 0.1;
+/// Parts of a recording that are looked at for missing frames,
+const PARTS: usize = 8;
+/// and what another lag must leave no more of there: creep and curves let a wrong one look a little better.
+const LOSES_STEP: f64 = 4.0;
 
 /// What is wrong with a recording, and what to do.
 pub(super) type Wrong = (String, String);
@@ -31,7 +35,7 @@ pub(super) fn pair<'a>(design: &Design, frames: &'a [Vec<f64>], measured: &Measu
     let readings: Vec<f64> = frames.iter().map(sum).collect();
     // Pressures of a bladder rise in steps, which any lag fits.
     let loads: Vec<Option<f64>> = measured.forces.iter().map(|force| force[2]).collect();
-    let lag = lag::find(&readings, &loads).map_err(|[one, other]| {
+    let lag = lag::find(&readings, &loads, lag::APART).map_err(|[one, other]| {
         (
             format!(
                 "frames and loads do not begin together: {} fits the loads as well as {}",
@@ -44,6 +48,22 @@ pub(super) fn pair<'a>(design: &Design, frames: &'a [Vec<f64>], measured: &Measu
     let skip = |frames: isize| usize::try_from(frames).unwrap_or(0);
     let (frames, from) = (&frames[skip(-lag)..], skip(lag));
     let both = frames.len().min(lines - from);
+    let readings = &readings[skip(-lag)..][..both];
+    for begin in (0..PARTS).map(|part| part * both / PARTS) {
+        let part = begin..(begin + both / PARTS);
+        if let Err([late, _]) | Ok(late @ (..=-1 | 1..)) =
+            lag::find(&readings[part.clone()], &loads[from..][part], LOSES_STEP)
+        {
+            return Err((
+                format!(
+                    "frames and loads lose step: about frame {begin} they belong together when {} frames are left out",
+                    late.unsigned_abs()
+                ),
+                "frames or lines are missing: give both files a column of times, or cut them where it happens"
+                    .to_owned(),
+            ));
+        }
+    }
     let mut remarks = Vec::new();
     if lag != 0 {
         remarks.push(format!(

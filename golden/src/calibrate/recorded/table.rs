@@ -7,7 +7,7 @@ use std::path::Path;
 
 use super::RecordedError;
 use super::columns::{Meaning, meanings};
-use crate::frames::{Array, read_array};
+use crate::frames::{Array, Frames, read_array};
 use crate::separator::{self, Comma, Separator, is_unknown};
 
 /// What was measured, frame by frame: forces and pressures have an entry for each, known or not.
@@ -34,6 +34,20 @@ impl Measured {
     /// The pressure in pascals of each frame, where it is known.
     pub fn of_pressures(pressures: Vec<Option<f64>>) -> Self {
         Self { forces: vec![[None; 3]; pressures.len()], pressures, ..Self::default() }
+    }
+}
+
+impl Measured {
+    /// What was measured with these frames, where those that were left out have lines.
+    #[must_use]
+    pub fn of(self, frames: &Frames) -> Self {
+        Self {
+            forces: frames.kept(self.forces),
+            pressures: frames.kept(self.pressures),
+            contacts: self.contacts.map(|names| frames.kept(names)),
+            times: self.times.map(|times| frames.kept(times)),
+            remarks: self.remarks,
+        }
     }
 }
 

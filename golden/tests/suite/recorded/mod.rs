@@ -244,7 +244,7 @@ fn what_a_recording_cannot_tell_is_not_fitted() {
         "{:?}",
         found.undetermined
     );
-    assert!(says(&found.undetermined, &["gains: contacts at 1 place do not tell"]));
+    assert!(says(&found.undetermined, &["gains: contacts at 1 place do not determine"]));
     // Six loads at one place, none of which comes out twice the same: a curve would be the slips' own.
     let loads = vec![2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
     let found = fit(&Recipe { loads, places: 1, power: 1.0, scale: 40.0, repeat: 0.18, ..curved.clone() });

@@ -1,6 +1,7 @@
 //! Frames and forces whose logs run at other rates or tell other times.
 
 use golden::calibrate::recorded::{Measured, fit_forces};
+use golden::frames::{Layout, read_recording};
 use golden::solver::{Solver, Status};
 
 use super::simulated::{Indenter, Recipe, Recording, design, record};
@@ -64,6 +65,41 @@ fn logs_without_times_are_paired_by_what_they_have_in_common() {
     measured.forces.rotate_left(5);
     let refused = fit_forces(&design(COUNTS, ""), &recording.frames, &measured).unwrap_err().to_string();
     assert!(refused.contains("do not begin together") && refused.contains("column of times"), "{refused}");
+}
+
+#[test]
+fn logs_that_lose_step_are_refused() {
+    let recording = recording();
+    for lost in [3, 10] {
+        let (mut frames, measured) = apart(&recording, 0);
+        let middle = frames.len() / 2;
+        frames.drain(middle..middle + lost);
+        let measured = Measured::of_forces(measured.forces[..frames.len()].to_vec());
+        let refused = fit_forces(&design(COUNTS, ""), &frames, &measured).unwrap_err().to_string();
+        assert!(refused.contains("lose step") && refused.contains("column of times"), "{lost}: {refused}");
+    }
+}
+
+#[test]
+fn frames_that_are_left_out_take_their_lines_along() {
+    let recording = recording();
+    let bad = [1, 100, 101, 102, recording.frames.len() - 1];
+    let line = |(place, frame): (usize, &Vec<f64>)| match bad.contains(&place) {
+        true => "-,".repeat(frame.len() - 1) + "-\n",
+        false => frame.iter().map(f64::to_string).collect::<Vec<_>>().join(",") + "\n",
+    };
+    let folder = tempfile::TempDir::new().unwrap();
+    let path = folder.path().join("frames.csv");
+    std::fs::write(&path, recording.frames.iter().enumerate().map(line).collect::<String>()).unwrap();
+    let layout = Layout { skip_bad: true, ..Layout::default() };
+    let read = read_recording(&path, &design(COUNTS, ""), layout).unwrap();
+    assert_eq!((read.count(), &read.skipped[..]), (recording.frames.len(), &bad[..]));
+    let kept: Vec<_> = (0..recording.frames.len()).filter(|place| !bad.contains(place)).collect();
+    assert_eq!(read.frames, kept.iter().map(|&place| recording.frames[place].clone()).collect::<Vec<_>>());
+    let forces: Vec<_> = kept.iter().map(|&place| recording.measured.forces[place]).collect();
+    assert_eq!(recording.measured.clone().of(&read).forces, forces);
+    // Who left them out of both has one line for each that is kept.
+    assert_eq!(Measured::of_forces(forces.clone()).of(&read).forces, forces);
 }
 
 #[test]
