@@ -273,8 +273,8 @@ fn raw(path: &Path) -> Result<Raw, RecordedError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
     let (mut heads, mut comments, mut rows) = (Vec::new(), Vec::new(), Vec::new());
     let mut separator = None;
-    for (index, content) in separator::lines(bytes).enumerate() {
-        let content = content.trim_ascii();
+    for (index, line) in separator::lines(bytes).enumerate() {
+        let content = line.trim_ascii();
         if content.is_empty() {
             // A file of one column may leave a line blank: the force is unknown.
             if separator.is_some_and(|_| !rows.is_empty()) {
@@ -290,7 +290,8 @@ fn raw(path: &Path) -> Result<Raw, RecordedError> {
         let content = content.strip_prefix(b"#").unwrap_or(content).trim_ascii();
         let of_line = Separator::of(content);
         let split = |by: Separator| -> Vec<String> {
-            by.split(content)
+            // A blank cell beside a tab is a cell.
+            by.split(if is_comment { content } else { by.trim(line) })
                 .into_iter()
                 .map(|field| String::from_utf8_lossy(field).trim().trim_matches('"').to_owned())
                 .collect()

@@ -1,6 +1,6 @@
 //! Frames and forces whose logs run at other rates or tell other times.
 
-use golden::calibrate::recorded::{Measured, fit_forces};
+use golden::calibrate::recorded::{Measured, fit_forces, read_forces};
 use golden::frames::{Layout, read_recording};
 use golden::solver::{Solver, Status};
 
@@ -84,9 +84,9 @@ fn logs_that_lose_step_are_refused() {
 fn frames_that_are_left_out_take_their_lines_along() {
     let recording = recording();
     let bad = [1, 100, 101, 102, recording.frames.len() - 1];
-    let line = |(place, frame): (usize, &Vec<f64>)| match bad.contains(&place) {
-        true => "-,".repeat(frame.len() - 1) + "-\n",
-        false => frame.iter().map(f64::to_string).collect::<Vec<_>>().join(",") + "\n",
+    let line = |(place, frame): (usize, &Vec<f64>)| {
+        let value = |value: &f64| if bad.contains(&place) { "-".to_owned() } else { value.to_string() };
+        frame.iter().map(value).collect::<Vec<_>>().join(",") + "\n"
     };
     let folder = tempfile::TempDir::new().unwrap();
     let path = folder.path().join("frames.csv");
@@ -98,6 +98,10 @@ fn frames_that_are_left_out_take_their_lines_along() {
     assert_eq!(read.frames, kept.iter().map(|&place| recording.frames[place].clone()).collect::<Vec<_>>());
     let forces: Vec<_> = kept.iter().map(|&place| recording.measured.forces[place]).collect();
     assert_eq!(recording.measured.clone().of(&read).forces, forces);
+    // A blank first cell beside a tab is one.
+    std::fs::write(&path, "F_x\tF_y\tF_z\n\t0.2\t-5\n0.1\t0.2\t-5\n").unwrap();
+    let read_back = read_forces(&path).unwrap().forces;
+    assert_eq!(read_back, [[None, Some(0.2), Some(-5.0)], [Some(0.1), Some(0.2), Some(-5.0)]]);
     // Who left them out of both has one line for each that is kept.
     assert_eq!(Measured::of_forces(forces.clone()).of(&read).forces, forces);
 }
