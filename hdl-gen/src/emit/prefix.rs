@@ -4,7 +4,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{FileMap, VERSION};
+use super::{FileMap, VERSION, rtl};
+use crate::cores::Multiplier;
 
 /// Second line of every file of the library.
 const PART: &str = "// Part of the SpTFRA hardware generator.";
@@ -42,7 +43,8 @@ pub fn stamp(files: &mut FileMap) {
 
 /// Puts the prefix before each module of the library: in its file's name, and in each file that names it.
 pub fn rename(files: &mut FileMap, Prefix(prefix): &Prefix) {
-    let modules: BTreeSet<String> = files.keys().filter(|path| is_library(path)).map(|path| module(path)).collect();
+    // Scripts name modules too that this core does without.
+    let modules: BTreeSet<&str> = rtl::library(Multiplier::Whole).into_keys().collect();
     let renamed: BTreeMap<String, Vec<u8>> = std::mem::take(files)
         .into_iter()
         .map(|(path, contents)| {
@@ -62,12 +64,8 @@ fn is_library(path: &str) -> bool {
     path.starts_with("rtl/sptfra_")
 }
 
-fn module(path: &str) -> String {
-    path.trim_start_matches("rtl/").trim_end_matches(".v").to_owned()
-}
-
 /// The text with the prefix before each word that names a module.
-fn with_prefix(text: &str, modules: &BTreeSet<String>, prefix: &str) -> String {
+fn with_prefix(text: &str, modules: &BTreeSet<&str>, prefix: &str) -> String {
     let mut result = String::with_capacity(text.len());
     let mut rest = text;
     while !rest.is_empty() {
@@ -97,14 +95,14 @@ mod tests {
         let mut files = FileMap::from([
             text("rtl/pad.v", "sptfra_mac a (); // sptfra_mac, not sptfra_machine\n"),
             text("rtl/sptfra_mac.v", "// SPDX\n// Part of the SpTFRA hardware generator.\nmodule sptfra_mac (\n"),
-            text("pad.f", "rtl/pad.v\nrtl/sptfra_mac.v\n"),
+            text("pad.f", "rtl/pad.v\nrtl/sptfra_mac.v\nsptfra_field\n"),
             text("design.toml", "name = \"sptfra_mac\"\n"),
         ]);
         stamp(&mut files);
         rename(&mut files, &"old_".parse().unwrap());
         let text = |path: &str| String::from_utf8(files[path].clone()).unwrap();
         assert_eq!(text("rtl/pad.v"), "old_sptfra_mac a (); // old_sptfra_mac, not sptfra_machine\n");
-        assert_eq!(text("pad.f"), "rtl/pad.v\nrtl/old_sptfra_mac.v\n");
+        assert_eq!(text("pad.f"), "rtl/pad.v\nrtl/old_sptfra_mac.v\nold_sptfra_field\n");
         assert_eq!(text("design.toml"), "name = \"sptfra_mac\"\n");
         let library = text("rtl/old_sptfra_mac.v");
         assert!(
