@@ -48,8 +48,8 @@ pub struct Logic {
 impl fmt::Display for Logic {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self { lut, ff, lut_error_percent, ff_error_percent } = self;
-        write!(f, "{lut} LUT, {ff} FF: a fit to Yosys' counts for UltraScale+, ")?;
-        write!(f, "within {lut_error_percent} and {ff_error_percent} % for shipped designs of 10 x 10 taxels")
+        write!(f, "{lut} LUT, {ff} FF by a fit to Yosys' counts; ")?;
+        write!(f, "within {lut_error_percent} and {ff_error_percent} % for shipped designs")
     }
 }
 
