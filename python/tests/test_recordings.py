@@ -62,7 +62,7 @@ class Judging(unittest.TestCase):
         self.assertEqual(status, [False, True], "offsets are a contact, and none any more")
         self.assertEqual(gains[:, 0].tolist(), alive.astype(float).tolist())
         self.assertLess(abs(gains[alive, 1] + found.offset.ravel()[alive]).max(), 1e-9)
-        with self.assertRaisesRegex(sptfra.Error, "3 frames at rest tell no noise"):
+        with self.assertRaisesRegex(sptfra.Error, "3 frames without load are too few"):
             sptfra.rest(counting, frames[:3])
 
     def test_numbers_of_columns_are_a_header(self):

@@ -260,7 +260,8 @@ class Solving(unittest.TestCase):
             sptfra.Solver(counting).solve(frames)
         lines = sptfra.FrameLines(counting, labels=1, origin="the port")
         self.assertIsNone(lines.frame(b"when;" + b";".join(b"taxel" for _ in range(12)) + b"\n"))
-        np.testing.assert_array_equal(lines.frame(b"now;" + b";".join(b"%d" % n for n in range(12))), np.arange(12).reshape(3, 4))
+        frame = lines.frame(b"now;" + b";".join(b"%d" % (n * n) for n in range(12)))
+        np.testing.assert_array_equal(frame, np.arange(12).reshape(3, 4) ** 2)
         with self.assertRaisesRegex(sptfra.Error, "the port, line 3, column 4: -2 is no uint16"):
             lines.frame(b"now;0;1;-2;3;4;5;6;7;8;9;10;11\r\n")
 
