@@ -150,7 +150,7 @@ pub fn push_line(text: &mut String, row: &[f64]) {
 pub fn read_outcomes(path: &Path, frames: usize) -> Result<Vec<Outcome>, FrameError> {
     let own = read_rows(path, frames);
     let is_named = frames::first_line(path)?.is_some_and(|line| {
-        let name = line.trim_start_matches(['"', '\u{feff}']);
+        let name = line.trim_start_matches('"');
         name.starts_with(char::is_alphabetic) && !name.starts_with("status")
     });
     if is_named || matches!(own, Err(FrameError::Length { .. })) {

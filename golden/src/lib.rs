@@ -59,4 +59,5 @@ pub mod solver;
 pub mod status;
 mod sums;
 pub mod table;
+mod units;
 pub mod words;

@@ -4,7 +4,7 @@
 //! point, and lines come one at a time from a port.
 
 /// What stands between the values of a line.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Separator {
     /// This character.
     Byte(u8),
@@ -14,7 +14,7 @@ pub(crate) enum Separator {
 
 /// What the commas, or the points, within a number are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Comma {
+enum Comma {
     /// A decimal point for certain.
     Decimal,
     /// A decimal point or a separator of thousands: three digits follow each.
@@ -23,12 +23,12 @@ pub(crate) enum Comma {
 
 impl Comma {
     /// The commas of a field; nothing if it has none.
-    pub(crate) fn of(field: &[u8]) -> Option<Self> {
+    fn of(field: &[u8]) -> Option<Self> {
         Self::marks(field, b',')
     }
 
     /// The points of a field; nothing if it has none.
-    pub(crate) fn of_points(field: &[u8]) -> Option<Self> {
+    fn of_points(field: &[u8]) -> Option<Self> {
         Self::marks(field, b'.')
     }
 
@@ -45,6 +45,53 @@ impl Comma {
             whole.len() == 3 && whole.iter().all(u8::is_ascii_digit)
         };
         Some(if is_first && groups.all(is_group) { Self::Unclear } else { Self::Decimal })
+    }
+}
+
+/// Commas and points in the numbers of a file: decimal ones, or separators of thousands.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Marks {
+    /// Whether a comma, and a point, is a decimal one for certain.
+    decimal: [bool; 2],
+    /// The first of which that is not clear.
+    unclear: [Option<Unclear>; 2],
+}
+
+/// A number whose comma, or point, may be a decimal one or a separator of thousands.
+#[derive(Clone, Debug)]
+pub(crate) struct Unclear {
+    /// Line and column, from 1.
+    pub(crate) place: [usize; 2],
+    pub(crate) text: String,
+    /// "comma" or "point".
+    pub(crate) mark: &'static str,
+}
+
+impl Marks {
+    /// Takes a field. Points count between semicolons, where a comma may be the decimal point.
+    ///
+    /// # Errors
+    ///
+    /// A field that is a number only with separators of thousands.
+    pub(crate) fn take(&mut self, field: &[u8], separator: Separator, place: [usize; 2]) -> Result<(), Unclear> {
+        let points = Some(field).filter(|_| matches!(separator, Separator::Byte(b';'))).and_then(Comma::of_points);
+        for (of, (mark, found)) in [("comma", Comma::of(field)), ("point", points)].into_iter().enumerate() {
+            let unclear = || Unclear { place, text: String::from_utf8_lossy(field).chars().take(40).collect(), mark };
+            match (found, number(field)) {
+                (Some(Comma::Decimal), Some(_)) => self.decimal[of] = true,
+                (Some(Comma::Unclear), Some(_)) => {
+                    self.unclear[of].get_or_insert_with(unclear);
+                }
+                (Some(Comma::Unclear), None) => return Err(unclear()),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// What may still be either.
+    pub(crate) fn open(&self) -> Option<&Unclear> {
+        self.unclear.iter().zip(self.decimal).find_map(|(unclear, decimal)| unclear.as_ref().filter(|_| !decimal))
     }
 }
 
@@ -123,4 +170,27 @@ pub(crate) fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
 fn bare(field: &[u8]) -> &[u8] {
     let field = field.trim_ascii();
     field.strip_prefix(b"\"").and_then(|field| field.strip_suffix(b"\"")).unwrap_or(field)
+}
+
+/// What separates the numbers of a line, where that is nothing that separates values here.
+pub(crate) fn foreign(content: &[u8]) -> Option<&'static str> {
+    const SEPARATORS: [(char, &str); 5] = [
+        ('|', "\"|\""),
+        (':', "\":\""),
+        ('/', "\"/\""),
+        ('\u{a0}', "a no-break space"),
+        ('\u{202f}', "a narrow no-break space"),
+    ];
+    let text = std::str::from_utf8(content).ok()?;
+    let separates = |&(separator, _): &(char, &str)| {
+        let ends = |c: char| c == separator || c.is_whitespace();
+        let mut fields = text.trim_matches(ends).split(separator);
+        fields.clone().nth(1).is_some() && fields.all(|field| field.trim().parse::<f64>().is_ok())
+    };
+    SEPARATORS.iter().find(|&separator| separates(separator)).map(|&(_, name)| name)
+}
+
+/// Whether a field is that of a header: text, of any encoding, and no number of any kind.
+pub(crate) fn no_number(field: &[u8]) -> bool {
+    String::from_utf8_lossy(field).replace(',', ".").parse::<f64>().is_err()
 }

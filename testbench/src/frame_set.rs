@@ -79,8 +79,8 @@ impl FrameSet {
         if let Some(reference) = reference {
             forces::compare_sensor(reference, &design.name, &design.sensor)?;
         }
-        let truth = reference.map(|path| read_outcomes(path, recording.count())).transpose()?;
-        let truth = truth.map(|truth| recording.kept(truth));
+        let outcomes = |path| recording.lines_of(|count| read_outcomes(path, count));
+        let truth = reference.map(outcomes).transpose()?;
         let Frames { frames: stress, remark, .. } = recording;
         Ok(Self { origin: frames.display().to_string(), stress, truth, remark, scene: None })
     }

@@ -116,7 +116,7 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
         let table = if place == 0 { read_pressures(measured) } else { read_forces(measured) }?;
         let table = match times {
             Some(times) if table.times.is_some() => table.at(times),
-            _ => Ok(table.of(&recording)),
+            _ => Ok(table.without_skipped(&recording)),
         };
         let (frames, table) =
             (&recording.frames, table.map_err(|problem| format!("{}: {problem}", measured.display()))?);

@@ -94,14 +94,14 @@ pub fn run(args: &Args) -> message::Result {
     if let Some(reference) = reference {
         forces::compare_sensor(reference, &design.name, &design.sensor)?;
     }
-    let truth = reference.map(|path| forces::read_outcomes(path, recording.count())).transpose()?;
-    let truth = truth.map(|truth| recording.kept(truth));
+    let outcomes = |path| recording.lines_of(|count| forces::read_outcomes(path, count));
+    let truth = reference.map(outcomes).transpose()?;
+    let of_contacts = |path, count| forces::read_contacts(path, count, &design.sensor).map(Option::unwrap_or_default);
     let contacts = reference
         .filter(|_| design.algorithm.contacts > 1)
-        .map(|path| forces::read_contacts(path, recording.count(), &design.sensor))
+        .map(|path| recording.lines_of(|count| of_contacts(path, count)))
         .transpose()?
-        .flatten()
-        .map(|contacts| recording.kept(contacts));
+        .filter(|contacts| !contacts.is_empty());
     if let Some(thin) = design.thin_layer() {
         eprintln!("warning: {thin}");
     }

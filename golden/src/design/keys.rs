@@ -217,7 +217,7 @@ pub(super) struct AlgorithmKeys {
     /// Most contacts that software separates. With 1 a frame is solved as that of one contact.
     #[schemars(range(min = 1, max = contacts::MOST))]
     pub contacts: usize,
-    /// Whether contacts are counted, so that a status bit marks a frame of several. In hardware this takes 2 % more LUTs.
+    /// Whether contacts are counted, so that a status bit marks a frame of several. In hardware this takes 3 to 4 % more LUTs.
     pub count_contacts: bool,
     /// What a frame yields.
     pub outputs: Outputs,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::DesignError;
 use super::files::Beside;
-use crate::separator::{self, Comma, Separator};
+use crate::separator::{self, Marks, Separator, Unclear};
 
 /// A line that is neither blank nor a remark.
 pub(super) struct Row {
@@ -70,18 +70,17 @@ impl Rows {
 
     /// Refuses commas of which each has three digits behind it: decimal points, or separators of thousands?
     fn refuse_thousands(&self) -> Result<(), DesignError> {
-        let commas = || self.rows.iter().flat_map(|row| row.fields.iter().map(|field| (row.line, field)));
-        let unclear = |&(_, field): &(usize, &String)| Comma::of(field.as_bytes()) == Some(Comma::Unclear);
-        let is_number = |field: &str| field.replace(',', ".").parse::<f64>().is_ok();
-        let decimal =
-            |(_, field): (usize, &String)| is_number(field) && Comma::of(field.as_bytes()) == Some(Comma::Decimal);
-        match commas().find(unclear) {
-            Some((line, field)) if !commas().any(decimal) => Err(self.wrong(
+        let mut marks = Marks::default();
+        let fields = self.rows.iter().flat_map(|row| row.fields.iter().map(|field| (row.line, field)));
+        // Points are decimal ones, whatever separates.
+        let taken = fields.map(|(line, field)| marks.take(field.as_bytes(), Separator::Spaces, [line, 0]));
+        match taken.collect::<Result<(), _>>().err().or_else(|| marks.open().cloned()) {
+            Some(Unclear { place: [line, _], text, .. }) => Err(self.wrong(
                 line,
-                format!("\"{field}\" has a decimal comma or a separator of thousands"),
+                format!("\"{text}\" has a decimal comma or a separator of thousands"),
                 "write decimal points, or remove the separators",
             )),
-            _ => Ok(()),
+            None => Ok(()),
         }
     }
 

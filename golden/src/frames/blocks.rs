@@ -6,9 +6,11 @@
 use std::path::Path;
 
 use super::layout::{Layout, Target};
+use super::text::{Lines, Text};
 use super::{FrameError, header};
 use crate::sensor::Sensor;
 use crate::separator::{self, Separator, is_unknown};
+use crate::units::pascals;
 
 /// A line of a file.
 struct Line<'a> {
@@ -21,11 +23,38 @@ struct Line<'a> {
 /// Frames of a file, each on one line.
 pub(super) struct Blocks {
     /// The first line of each, from 1, and its fields, separated by semicolons or tabs.
-    pub(super) frames: Vec<(usize, Vec<u8>)>,
+    frames: Vec<(usize, Vec<u8>)>,
     /// Whether numbers of the columns stand above.
-    pub(super) is_numbered: bool,
+    is_numbered: bool,
     /// The unit that the header names.
-    pub(super) unit: Option<String>,
+    unit: Option<String>,
+}
+
+impl Blocks {
+    /// The frames.
+    pub(super) fn read(
+        &self,
+        mut lines: Lines,
+        target: &Target,
+        wrong_length: impl Fn(usize) -> Option<usize>,
+    ) -> Result<Text, FrameError> {
+        let Sensor { columns, rows, .. } = target.sensor;
+        let (unit, remark) = self.unit.as_ref().map_or((None, None), |unit| header::worth(unit, target, -1.0));
+        let path = lines.path().display().to_string();
+        let mut text = Text::default();
+        for (line, frame) in &self.frames {
+            lines.begin_block(*line, columns, unit);
+            if let Some(row) = lines.row(frame, &wrong_length)? {
+                text.rows.push(row);
+                text.lines.push(*line);
+            }
+        }
+        lines.end(&mut text)?;
+        let numbers = if self.is_numbered { ", below numbers of the columns" } else { "" };
+        text.remarks.push(format!("{path}: frames are blocks of {rows} lines of {columns} values{numbers}"));
+        text.remarks.extend(remark.map(|remark| format!("{path}: {remark}")));
+        Ok(text)
+    }
 }
 
 /// Puts the rows of each frame on one line; nothing if the file has a line for each frame, or lines of other lengths.
@@ -34,8 +63,7 @@ pub(super) fn join(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
     let mut all: Vec<Line> = separator::lines(bytes)
         .enumerate()
         .skip(layout.skip_lines)
-        .map(|(index, line)| (index + 1, line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line)))
-        .map(|(number, line)| Line { number, content: line.trim_ascii(), row: row(line, columns) })
+        .map(|(index, line)| Line { number: index + 1, content: line.trim_ascii(), row: row(line, columns) })
         .collect();
     let of_length =
         |length: usize| all.iter().filter(move |line| line.row.as_ref().is_some_and(|row| row.len() == length)).count();
@@ -59,7 +87,7 @@ pub(super) fn join(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
     // Numbers of the columns above frames, as pandas writes them: without them the rows are whole frames.
     let numbers = Sensor { rows: 1, ..target.sensor.clone() };
     let head = all.iter().find_map(|line| Some((line.content, line.row.as_ref()?)));
-    let head = head.filter(|(_, row)| header::is_numbered(row, &numbers)).map(|(content, _)| content);
+    let head = head.filter(|(_, row)| header::is_numbered(row, &numbers, true)).map(|(content, _)| content);
     let is_row = |line: &&Line| line.row.as_ref().is_some_and(|row| row.len() == columns) && Some(line.content) != head;
     let others = all.iter().filter(is_row).count();
     let is_numbered = head.is_some() && others > 0 && others.is_multiple_of(rows);
@@ -105,13 +133,16 @@ fn row(line: &[u8], columns: usize) -> Option<Vec<&[u8]>> {
     (fields.iter().all(is_reading) && fields.iter().any(is_number)).then_some(fields)
 }
 
-/// The unit that a line of words above the frames names.
+/// The unit that a line of words above the frames names: a known one, or else the word behind "unit".
 fn unit(lines: &[Line]) -> Option<String> {
     let words = lines.iter().take_while(|line| line.row.as_ref().is_none_or(|row| row.len() < 2));
     words.map(|line| String::from_utf8_lossy(line.content)).find_map(|text| {
+        let is_unit = |word: &&str| ["unit", "einheit"].iter().any(|unit| word.to_lowercase().contains(unit));
         let mut words =
             text.split([' ', '\t', ':', '=', ',', ';', '"', '(', ')', '[', ']']).filter(|word| !word.is_empty());
-        words.find(|word| matches!(word.to_lowercase().as_str(), "unit" | "units" | "einheit"))?;
-        words.next().map(|unit| unit.replace(char::is_control, ""))
+        words.find(is_unit)?;
+        let behind: Vec<&str> = words.collect();
+        let unit = behind.iter().find(|word| pascals(word).is_some()).or(behind.first())?;
+        Some(unit.replace(char::is_control, ""))
     })
 }

@@ -1,12 +1,14 @@
 //! What the lines above the frames say: which columns hold the taxels, in which order and unit, and which one times.
 
 use super::layout::{Layout, Target};
-use crate::calibrate::recorded::pressure_unit;
 use crate::sensor::Sensor;
 use crate::separator;
+use crate::units::{pascals, seconds};
 
 /// So few numbers in turn may be a frame: no sensor has fewer taxels.
-pub(super) const FEWEST_NUMBERED: usize = 4;
+const FEWEST_NUMBERED: usize = 4;
+/// So few numbers in any order may be a frame, if no word stands beside them.
+const FEWEST_ALONE: usize = 6;
 
 /// The names of the columns, and what they say.
 #[derive(Clone, Debug, Default)]
@@ -125,7 +127,9 @@ impl Header {
                 let others = values.clone().filter(|&column| !kinds[column].contains('#')).count();
                 let are_numbered = others < taxels - others;
                 let is_other = |&column: &usize| {
-                    !kinds[column].contains('#') && (are_numbered || column == first && is_label(&names[column]))
+                    !target.dead.contains(&(column - first))
+                        && !kinds[column].contains('#')
+                        && (are_numbered || column == first && is_label(&names[column]))
                 };
                 if let Some(column) = values.clone().find(is_other) {
                     return Err(format!(
@@ -142,6 +146,12 @@ impl Header {
         Ok(())
     }
 
+    /// The column of a taxel, from 1, behind so many of labels.
+    pub(super) fn column(&self, labels: usize, taxel: usize) -> usize {
+        let place = self.order.as_ref().and_then(|order| order.iter().position(|&other| other == taxel));
+        labels + place.unwrap_or(taxel) + 1
+    }
+
     /// Whether the names of some columns are the same, so that a line of numbers below is one of names.
     pub(super) fn is_alike(&self) -> bool {
         let mut names = self.names.clone();
@@ -150,8 +160,9 @@ impl Header {
     }
 }
 
-/// Whether a line has the numbers of all taxels, or of their columns or rows, and no other number.
-pub(super) fn is_numbered(fields: &[&[u8]], sensor: &Sensor) -> bool {
+/// Whether a line has the numbers of all taxels, or of their columns or rows, and no other number. Alone, without a word or a
+/// blank beside them, a few small numbers may be a frame.
+pub(super) fn is_numbered(fields: &[&[u8]], sensor: &Sensor, alone: bool) -> bool {
     let whole = |number: f64| (number >= 0.0 && number.fract() == 0.0).then_some(number as usize);
     let numbers = fields.iter().filter_map(|field| separator::number(field));
     let Some(numbers) = numbers.map(whole).collect::<Option<Vec<usize>>>() else { return false };
@@ -164,8 +175,32 @@ pub(super) fn is_numbered(fields: &[&[u8]], sensor: &Sensor) -> bool {
     let of = |number: &dyn Fn(usize) -> usize| {
         numbers.iter().enumerate().all(|(at, &found)| found == sorted[0] + number(at))
     };
-    let is_grid = columns > 1 && rows > 1 && (of(&|taxel| taxel % columns) || of(&|taxel| taxel / columns));
-    sorted[0] < 2 && (is_grid || sorted.iter().copied().eq(sorted[0]..sorted[0] + numbers.len()))
+    let least = if alone { 3 } else { 2 };
+    let is_grid = columns >= least && rows > 1 && of(&|taxel| taxel % columns)
+        || rows >= least && columns > 1 && of(&|taxel| taxel / columns);
+    let is_each = sorted.iter().copied().eq(sorted[0]..sorted[0] + numbers.len());
+    sorted[0] < 2 && (is_grid || is_each && (!alone || numbers.len() >= FEWEST_ALONE || numbers.is_sorted()))
+}
+
+/// Whether the first of these rows is a header of whole numbers that ascend, or that stand behind a word where others have a
+/// number. No other row is like it, but for headers between recordings.
+pub(super) fn is_guessed(rows: &[Vec<f64>], labels: &[bool]) -> bool {
+    let Some(first) = rows.first() else { return false };
+    let again: Vec<bool> = (0..rows.len()).map(|row| rows[row] == *first && labels[row] == labels[0]).collect();
+    let others = || (0..rows.len()).filter(|&row| !again[row]);
+    let ascend = ascends(first) && !others().any(|row| ascends(&rows[row]));
+    let is_labelled = is_whole(first) && !labels[0] && others().all(|row| labels[row]);
+    others().next().is_some() && !again.windows(2).any(|pair| pair[0] && pair[1]) && (ascend || is_labelled)
+}
+
+/// Whether all values are those of a count from 0 on.
+fn is_whole(row: &[f64]) -> bool {
+    row.len() >= FEWEST_NUMBERED && row.iter().all(|&value| value >= 0.0 && value.fract() == 0.0)
+}
+
+/// Whether values are whole and each is larger than the one before, as the numbers of a sensor's taxels with gaps.
+pub(super) fn ascends(row: &[f64]) -> bool {
+    is_whole(row) && row.windows(2).all(|pair| pair[1] > pair[0])
 }
 
 /// The taxel of each name by its number, or by its row and column; nothing where numbers do not say so.
@@ -177,21 +212,21 @@ fn order(names: &[String], sensor: &Sensor) -> Option<Vec<usize>> {
     }
     let numbers: Vec<Vec<usize>> = names.iter().map(|name| numbers_of(name)).collect();
     // Each of the numbers in a name that is not the same in all names, from 0.
-    let mut parts: Vec<Vec<usize>> = Vec::new();
-    for part in 0..kind.matches('#').count() {
+    let mut parts: Vec<(String, Vec<usize>)> = Vec::new();
+    for (part, before) in kind.split('#').enumerate().take(kind.matches('#').count()) {
         let values = numbers.iter().map(|of| of.get(part).copied()).collect::<Option<Vec<usize>>>()?;
         let least = *values.iter().min()?;
         if values.iter().any(|&value| value != least) {
-            parts.push(values.iter().map(|value| value - least.min(1)).collect());
+            let word = before.rsplit(|c: char| !c.is_alphabetic()).find(|word| !word.is_empty()).unwrap_or_default();
+            parts.push((word.to_lowercase(), values.iter().map(|value| value - least.min(1)).collect()));
         }
     }
     let order: Vec<usize> = match parts.as_slice() {
-        [only] => only.clone(),
-        [a, b] => {
-            let word = kind.split('#').next().unwrap_or_default().trim().to_lowercase();
-            let row_first = match word.as_str() {
-                "r" | "row" | "y" | "zeile" => true,
-                "c" | "col" | "column" | "x" | "spalte" => false,
+        [(_, only)] => only.clone(),
+        [(first, a), (second, b)] => {
+            let row_first = match [first.as_str(), second] {
+                ["r", "c"] | ["row", "col" | "column"] | ["y", "x"] | ["zeile", "spalte"] => true,
+                ["c", "r"] | ["col" | "column", "row"] | ["x", "y"] | ["spalte", "zeile"] => false,
                 _ if columns == rows => return None,
                 _ => b.iter().max().is_some_and(|&most| most + 1 == columns),
             };
@@ -222,7 +257,7 @@ fn numbers_of(name: &str) -> Vec<usize> {
 /// What a value is worth in pascals by the unit of a header, and what is to be said of it; `sign` is that of what presses.
 pub(super) fn worth(unit: &str, target: &Target, sign: f64) -> (Option<f64>, Option<String>) {
     let gives = format!("the header gives the unit {unit}");
-    match pressure_unit(unit).map(|pascals| sign * pascals) {
+    match pascals(unit).map(|pascals| sign * pascals) {
         Some(_) if target.counts => (None, Some(format!("{gives}; the design says what a value is worth"))),
         None if target.counts => (None, None),
         None => (None, Some(format!("{gives}, which is no known pressure: values are taken for pascals"))),
@@ -234,18 +269,25 @@ pub(super) fn worth(unit: &str, target: &Target, sign: f64) -> (Option<f64>, Opt
     }
 }
 
-/// A name without its unit, and the unit: in brackets, or a known one behind a number.
+/// A name without its unit, and the unit: in brackets, or a known one behind the first or the last number.
 fn split(name: &str) -> (&str, &str) {
-    let around = |c: char| !c.is_alphanumeric() && c != '²';
+    let around = |c: char| !c.is_alphanumeric();
     if let Some((before, unit)) = name.rsplit_once(['(', '[', '{'])
         && unit.starts_with(char::is_alphabetic)
         && (unit.contains('/') || !unit.contains(|c: char| c.is_ascii_digit()))
     {
         return (before, unit.trim_matches(around));
     }
-    let behind = name.rfind(|c: char| c.is_ascii_digit()).map_or(name.len(), |last| last + 1);
-    let unit = name[behind..].trim_matches(around);
-    if pressure_unit(unit).is_some() { (&name[..behind], unit) } else { (name, "") }
+    let first = name
+        .find(|c: char| c.is_ascii_digit())
+        .map(|from| from + name[from..].find(|c: char| !c.is_ascii_digit()).unwrap_or(name.len() - from));
+    let last = name.rfind(|c: char| c.is_ascii_digit()).map(|last| last + 1);
+    [first, last]
+        .into_iter()
+        .flatten()
+        .map(|behind| (&name[..behind], name[behind..].trim_matches(around)))
+        .find(|(_, unit)| pascals(unit).is_some())
+        .unwrap_or((name, ""))
 }
 
 /// A name with `#` in the place of each of its numbers.
@@ -267,19 +309,4 @@ fn decoded(field: &[u8]) -> String {
     let latin = |_| field.iter().copied().map(char::from).collect();
     let text: String = std::str::from_utf8(field).map_or_else(latin, str::to_owned);
     text.replace(char::is_control, " ")
-}
-
-/// Seconds of the unit of a column of times, by its name; nothing for another column.
-pub(crate) fn seconds(name: &str) -> Option<f64> {
-    let lower = name.to_lowercase();
-    let mut words = lower.split(|c: char| !c.is_alphanumeric() && c != 'µ').filter(|word| !word.is_empty());
-    let is_time = matches!(words.next()?, "t" | "time" | "timestamp" | "zeit");
-    let unit = match words.next() {
-        None | Some("s" | "sec" | "seconds") => 1.0,
-        Some("ms" | "millis" | "milliseconds") => 1e-3,
-        Some("us" | "µs" | "micros" | "microseconds") => 1e-6,
-        Some("ns") => 1e-9,
-        Some(_) => return None,
-    };
-    is_time.then_some(unit)
 }

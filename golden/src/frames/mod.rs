@@ -9,12 +9,12 @@ mod blocks;
 mod error;
 mod format;
 mod header;
+mod hints;
 mod layout;
 mod npy;
 mod stream;
 mod text;
 
-pub(crate) use header::seconds;
 pub(crate) use npy::Array;
 
 use std::fmt::Write;
@@ -24,7 +24,7 @@ pub use error::FrameError;
 pub use layout::Layout;
 use layout::Target;
 pub use stream::{FrameLines, FrameStream};
-use text::Text;
+use text::{BYTE_ORDER_MARK, Text};
 
 use crate::design::Design;
 use crate::output;
@@ -49,9 +49,23 @@ impl Frames {
         self.frames.len() + self.skipped.len()
     }
 
+    /// Lines of a file beside the frames, without those of frames that were left out, which it may have or not. `read` reads
+    /// so many lines.
+    ///
+    /// # Errors
+    ///
+    /// Those of `read`, and [`FrameError::Count`] for another number of lines.
+    pub fn lines_of<T>(&self, read: impl Fn(usize) -> Result<Vec<T>, FrameError>) -> Result<Vec<T>, FrameError> {
+        match read(self.count()) {
+            Err(FrameError::Count { .. }) if !self.skipped.is_empty() => read(self.frames.len()),
+            lines => lines,
+        }
+        .map(|lines| self.kept(lines))
+    }
+
     /// The lines of a file that has one for each frame, without those of frames that were left out. It stays as it is if it
     /// has none of these.
-    pub fn kept<T>(&self, lines: Vec<T>) -> Vec<T> {
+    pub(crate) fn kept<T>(&self, lines: Vec<T>) -> Vec<T> {
         if lines.len() == self.frames.len() {
             return lines;
         }
@@ -89,19 +103,19 @@ fn read_text(path: &Path, layout: &Layout, target: &Target) -> Result<Text, Fram
 ///
 /// As [`read_frames`].
 pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -> Result<Frames, FrameError> {
-    let Text { rows: frames, lines, labels, order, times, skipped, remarks } =
+    let Text { rows: frames, lines, labels, header, times, skipped, remarks } =
         read_text(path, &layout.into(), &design.into())?;
     let samples = design.hardware.samples;
     let wrong = |values: &Vec<f64>| values.iter().position(|&value| !samples.takes(value));
     let found = frames.iter().enumerate().find_map(|(frame, values)| Some((frame, wrong(values)?)));
     let Some((frame, column)) = found else {
         let remark = (!remarks.is_empty()).then(|| remarks.join("; "));
-        // A header of numbers has no time, and a bad line has one.
+        // A header that was taken for a row has no time.
         let times = times.filter(|times| times.len() == frames.len() && times.iter().all(|time| time.is_finite()));
         return Ok(Frames { frames, times, skipped, remark });
     };
     let place = match lines.get(frame) {
-        Some(line) => format!("line {line}, column {}", text::column(labels, order.as_deref(), column)),
+        Some(line) => format!("line {line}, column {}", header.column(labels, column)),
         None => format!("[{frame}, {}]", labels + column),
     };
     Err(FrameError::Sample { path: path.to_path_buf(), place, value: frames[frame][column], samples })
@@ -177,7 +191,10 @@ fn read_table(
 
 /// The content of a file that may be one of frames.
 fn bytes_of(path: &Path) -> Result<Vec<u8>, FrameError> {
-    let bytes = std::fs::read(path).map_err(|source| FrameError::Read { path: path.to_path_buf(), source })?;
+    let mut bytes = std::fs::read(path).map_err(|source| FrameError::Read { path: path.to_path_buf(), source })?;
+    if bytes.starts_with(BYTE_ORDER_MARK) {
+        bytes.drain(..BYTE_ORDER_MARK.len());
+    }
     match format::other(&bytes) {
         Some((what, remedy)) => Err(FrameError::Format { path: path.to_path_buf(), what, remedy }),
         None => Ok(bytes),

@@ -41,8 +41,7 @@ impl FrameLines {
         let taxels = self.taxels;
         let Some(frame) = self.lines.row(line, |found| (found != taxels).then_some(taxels))? else { return Ok(None) };
         self.lines.unclear()?;
-        if !std::mem::replace(&mut self.begun, true) && self.lines.is_numbered(&frame, &[]) {
-            self.lines.take_for_header(line, &frame);
+        if !std::mem::replace(&mut self.begun, true) && self.lines.is_numbered(&frame) {
             return Ok(None);
         }
         let wrong = frame.iter().position(|&value| !self.samples.takes(value));

@@ -2,18 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use super::blocks::{self, Blocks};
-use super::header::{self, FEWEST_NUMBERED, Header};
+use super::header::{self, Header};
 use super::layout::{Layout, Target};
-use super::{FrameError, is_number};
+use super::{FrameError, blocks, hints, is_number};
 use crate::geometry;
-use crate::separator::{self, Comma, Separator, is_unknown};
+use crate::separator::{self, Marks, Separator, Unclear, foreign, is_unknown, no_number};
 
 /// What some programs write before the first line.
-const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
-
-/// What may stand before decimals.
-const MARKS: [&str; 2] = ["comma", "point"];
+pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Rows of a file with their lines, and what is to be said of it.
 #[derive(Clone, Debug, Default)]
@@ -23,8 +19,8 @@ pub(super) struct Text {
     pub(super) lines: Vec<usize>,
     /// Columns before the values.
     pub(super) labels: usize,
-    /// The taxel of each value behind the labels, where that is not their order.
-    pub(super) order: Option<Vec<usize>>,
+    /// What stands above the rows.
+    pub(super) header: Header,
     /// The time of each row in seconds, where the header names such a column.
     pub(super) times: Option<Vec<f64>>,
     /// Rows that were left out, by their place among all, from 0.
@@ -61,11 +57,11 @@ pub(super) struct Lines {
     block: Option<usize>,
     /// How many lines there were.
     number: usize,
-    /// Whether a comma, and a point, is a decimal one for certain, and the first of which that is not clear.
-    decimal: [bool; 2],
-    unclear: [Option<(usize, usize, String)>; 2],
+    marks: Marks,
     /// Cells of a line that has blank ones behind its last value.
     padded: Option<usize>,
+    /// The first line that was left out as too long, and its cells.
+    too_long: Option<(usize, usize)>,
     /// Lines that were left out, and what was wrong with the first.
     bad: Option<(Vec<usize>, String)>,
     remarks: Vec<String>,
@@ -84,9 +80,9 @@ impl Lines {
             comments: Vec::new(),
             block: None,
             number: 0,
-            decimal: [false; 2],
-            unclear: [None, None],
+            marks: Marks::default(),
             padded: None,
+            too_long: None,
             bad: None,
             remarks: Vec::new(),
         }
@@ -127,7 +123,7 @@ impl Lines {
 
     /// The column of a taxel, from 1.
     pub(super) fn column(&self, taxel: usize) -> usize {
-        column(self.labels(), self.header.order.as_deref(), taxel)
+        self.header.column(self.labels(), taxel)
     }
 
     /// The numbers of the next line. Nothing for a blank one, for one that begins with #, for lines of names and units.
@@ -175,11 +171,16 @@ impl Lines {
             return Err(FrameError::Separator { path: self.path.clone(), line: self.number, separator });
         }
         let values = fields.get(self.labels()..).unwrap_or_default();
-        let is_words = || values.iter().all(|field| no_number(field));
-        let is_numbered = || self.target.as_ref().is_some_and(|target| header::is_numbered(values, &target.sensor));
+        // Readings that are not there are no words.
+        let is_word = |field: &&[u8]| no_number(field);
+        let is_known = |field: &&[u8]| !is_unknown(&String::from_utf8_lossy(field));
+        let words = if values.is_empty() { &fields } else { values };
+        let is_words = || words.iter().all(is_word) && (self.target.is_none() || words.iter().any(is_known));
+        let is_numbered =
+            |alone| self.target.as_ref().is_some_and(|target| header::is_numbered(values, &target.sensor, alone));
         let (is_words, is_numbered) = match self.state {
-            State::Begin => (is_words(), is_numbered()),
-            State::Header => (is_words() && self.is_units(values), is_numbered() && self.header.is_alike()),
+            State::Begin => (is_words(), is_numbered(!fields.iter().any(is_word))),
+            State::Header => (is_words() && self.is_units(values), is_numbered(false) && self.header.is_alike()),
             State::Rows => (false, false),
         };
         let is_header = is_words || is_numbered;
@@ -195,19 +196,28 @@ impl Lines {
         }
         if self.state == State::Begin {
             // As numpy.savetxt writes its header.
-            let names = std::mem::take(&mut self.comments).into_iter().find_map(|(line, comment)| {
-                let names =
-                    Separator::of(&comment).fields(&comment).into_iter().map(<[u8]>::to_vec).collect::<Vec<_>>();
-                (names.len() == fields.len()).then_some((line, names))
-            });
-            if let Some((line, names)) = names {
-                self.names(line, &names.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
+            for (line, comment) in std::mem::take(&mut self.comments) {
+                let of_comment = Separator::of(&comment);
+                let names = of_comment.fields(&comment);
+                // Words of a remark may be as many.
+                let is_certain =
+                    of_comment == separator && line + 1 == self.number && !matches!(separator, Separator::Spaces);
+                match (names.len() == fields.len()).then(|| self.names(line, &names)) {
+                    Some(Ok(())) => break,
+                    Some(Err(problem)) if is_certain => return Err(problem),
+                    _ => {}
+                }
             }
         }
         self.state = State::Rows;
         match self.values(separator, content, wrong_length) {
             Ok(row) => Ok(Some(row)),
             Err(error) if self.layout.skip_bad => {
+                if let FrameError::Length { found, expected, .. } = error
+                    && found > expected
+                {
+                    self.too_long.get_or_insert((self.number, found));
+                }
                 self.bad.get_or_insert_with(|| (Vec::new(), error.to_string())).0.push(self.number);
                 Ok(None)
             }
@@ -229,15 +239,13 @@ impl Lines {
         self.remarks.push(format!("{}, line {}: {remark}", self.path.display(), self.number));
     }
 
-    /// Whether the first row is a header of the sensor's numbers: they are whole and ascend, as those of no other row.
-    pub(super) fn is_numbered(&self, first: &[f64], others: &[&Vec<f64>]) -> bool {
-        self.target.is_some() && self.heads.is_empty() && ascends(first) && !others.iter().any(|row| ascends(row))
-    }
-
-    /// Takes the last line for one of numbers of the columns, and each that is the same.
-    pub(super) fn take_for_header(&mut self, line: &[u8], row: &[f64]) {
-        self.heads.push(line.trim_ascii().to_vec());
-        self.numbered(row[row.len() - 1]);
+    /// Whether a first row is a header of the sensor's numbers, as far as it can tell: they are whole and ascend. It says so.
+    pub(super) fn is_numbered(&mut self, first: &[f64]) -> bool {
+        let is_header = self.heads.is_empty() && header::ascends(first);
+        if is_header {
+            self.numbered(first[first.len() - 1]);
+        }
+        is_header
     }
 
     /// Says that a line was taken for the numbers of the columns.
@@ -255,7 +263,6 @@ impl Lines {
         wrong_length: impl Fn(usize) -> Option<usize>,
     ) -> Result<Vec<f64>, FrameError> {
         let first = self.labels();
-        let dead = self.target.as_ref().map_or(Vec::new(), |target| target.dead.clone());
         // Blank cells behind the last column are nothing; a blank one in it is a value that is not there.
         let cells = separator.split(content);
         let columns = match (&self.target, self.columns()) {
@@ -267,7 +274,6 @@ impl Lines {
         if self.target.is_some() && fields.len() == columns && cells.len() > columns {
             self.padded = Some(cells.len());
         }
-        let path = self.path.clone();
         let end = self.columns().map_or(fields.len(), |[_, last]| last);
         if fields.len() < end {
             return Err(self.wrong_length(fields.len(), end));
@@ -283,92 +289,38 @@ impl Lines {
         let taxel = |index: usize| order.and_then(|order| order.get(index).copied()).unwrap_or(index);
         let mut row = Vec::with_capacity(end);
         for (index, field) in fields.iter().enumerate().take(end).skip(first) {
-            let (line, column) = match self.block {
-                Some(columns) => (self.number + index / columns, index % columns + 1),
-                None => (self.number, index + 1),
+            let place = match self.block {
+                Some(columns) => [self.number + index / columns, index % columns + 1],
+                None => [self.number, index + 1],
             };
-            let text = || String::from_utf8_lossy(field).chars().take(40).collect::<String>();
+            self.marks.take(field, separator, place).map_err(|unclear| thousands(&self.path, &unclear))?;
             let number = separator::number(field).map(|value| value * unit).filter(|&value| is_number(value));
-            let points = Some(field).filter(|_| matches!(separator, Separator::Byte(b';')));
-            for (mark, found) in
-                [Comma::of(field), points.and_then(|field| Comma::of_points(field))].into_iter().enumerate()
-            {
-                match (found, number) {
-                    (Some(Comma::Decimal), Some(_)) => self.decimal[mark] = true,
-                    (Some(Comma::Unclear), Some(_)) => {
-                        self.unclear[mark].get_or_insert_with(|| (line, column, text()));
-                    }
-                    (Some(Comma::Unclear), None) => {
-                        return Err(FrameError::Thousands { path, line, column, text: text(), mark: MARKS[mark] });
-                    }
-                    _ => {}
-                }
-            }
+            let target = self.target.as_ref();
+            let is_dead = || target.is_some_and(|target| target.dead.contains(&taxel(index - first)));
             match number {
                 Some(number) => row.push(number),
-                None if dead.contains(&taxel(index - first)) => row.push(0.0),
+                None if is_dead() => row.push(0.0),
                 None => {
-                    let (text, remedy) = (text(), self.value_remedy(&text()));
-                    return Err(FrameError::Value { path, line, column, remedy, text });
+                    let text: String = String::from_utf8_lossy(field).chars().take(40).collect();
+                    let remedy = hints::value(target, &self.layout, &text);
+                    let [line, column] = place;
+                    return Err(FrameError::Value { path: self.path.clone(), line, column, remedy, text });
                 }
             }
         }
-        match wrong_length(row.len()) {
-            None => {
-                let mut ordered = row.clone();
-                row.iter().enumerate().for_each(|(index, &value)| ordered[taxel(index)] = value);
-                Ok(ordered)
-            }
-            Some(wanted) => Err(self.wrong_length(fields.len(), first + wanted)),
+        if let Some(wanted) = wrong_length(row.len()) {
+            return Err(self.wrong_length(fields.len(), first + wanted));
         }
-    }
-
-    /// What to do about a field that is no number.
-    fn value_remedy(&self, text: &str) -> String {
-        let counts = self.target.as_ref().is_some_and(|target| target.counts);
-        if is_unknown(text) && self.target.is_some() {
-            let skip = if self.layout.skip_bad { "" } else { ", or leave such frames out with --skip-bad" };
-            return format!("name a taxel that is dead in sensor.dead{skip}");
-        }
-        let what = if counts { "the sensor's count, such as 1012" } else { "the stress in pascals, such as -1250.5" };
-        format!(
-            "give {what}, separated by commas, semicolons, tabs or spaces; columns before the values need --labels, columns \
-             behind them --columns FIRST-LAST, lines above them --skip-lines, and a header has no number in it"
-        )
+        let Some(order) = order else { return Ok(row) };
+        let mut ordered = row.clone();
+        order.iter().zip(row).for_each(|(&taxel, value)| ordered[taxel] = value);
+        Ok(ordered)
     }
 
     /// A line of another length than `expected`, the labels among it.
     fn wrong_length(&self, found: usize, expected: usize) -> FrameError {
-        let hint = match &self.target {
-            Some(target) => self.length_hint(target, found, expected),
-            None => "give a line of forces for each frame".to_owned(),
-        };
+        let hint = hints::length(self.target.as_ref(), self.labels(), found, expected);
         FrameError::Length { path: self.path.clone(), line: self.number, found, expected, hint }
-    }
-
-    /// What to do about it.
-    fn length_hint(&self, target: &Target, found: usize, expected: usize) -> String {
-        let (first, taxels) = (self.labels(), target.sensor.taxels());
-        let hint = match found.saturating_sub(expected) {
-            0 => String::new(),
-            more if more == taxels => format!(
-                "; are these decimal commas? Separate the values by semicolons. Or two arrays in a line? Say which with \
-                 --columns {}-{} or --columns {}-{}",
-                first + 1,
-                first + taxels,
-                first + taxels + 1,
-                first + 2 * taxels
-            ),
-            more => format!(
-                "; {more} columns more than taxels, a time or a total: in front of the values? Say so with --labels {}. Behind \
-                 them? With --columns {}-{}",
-                first + more,
-                first + 1,
-                first + taxels
-            ),
-        };
-        let what = if target.counts { "count" } else { "stress" };
-        format!("give one {what} for each taxel of the sensor{hint}")
     }
 
     /// Whether the fields of a second line of words are units: the same for all taxels.
@@ -378,50 +330,44 @@ impl Lines {
         values.len() > 1 && values.iter().all(|field| *field == values[0])
     }
 
-    /// The frames of a file of blocks.
-    fn blocks(
-        mut self,
-        blocks: &Blocks,
-        target: &Target,
-        wrong_length: impl Fn(usize) -> Option<usize>,
-    ) -> Result<Text, FrameError> {
-        let (columns, rows) = (target.sensor.columns, target.sensor.rows);
-        (self.state, self.block) = (State::Rows, Some(columns));
-        let (unit, remark) = blocks.unit.as_ref().map_or((None, None), |unit| header::worth(unit, target, -1.0));
+    /// From now on a line is a frame whose rows have so many columns and begin at line `number`, in a unit worth so much.
+    pub(super) fn begin_block(&mut self, number: usize, columns: usize, unit: Option<f64>) {
+        (self.state, self.block, self.number) = (State::Rows, Some(columns), number - 1);
         self.header.unit = unit;
-        let mut text = Text::default();
-        for (line, frame) in &blocks.frames {
-            self.number = line - 1;
-            if let Some(row) = self.row(frame, &wrong_length)? {
-                text.rows.push(row);
-                text.lines.push(*line);
-            }
-        }
-        self.unclear()?;
-        let path = self.path.display();
-        text.remarks = self.remarks();
-        let numbers = if blocks.is_numbered { ", below numbers of the columns" } else { "" };
-        text.remarks.push(format!("{path}: frames are blocks of {rows} lines of {columns} values{numbers}"));
-        text.remarks.extend(remark.map(|remark| format!("{path}: {remark}")));
-        Ok(text)
-    }
-
-    /// Refuses a column behind the values that is blank on some lines, and whose other lines were left out.
-    fn padding(&mut self, bytes: &[u8]) -> Result<(), FrameError> {
-        let (Some(cells), Some(_), Some(separator)) = (self.padded, &self.bad, self.separator) else { return Ok(()) };
-        let count = |line: &[u8]| separator.fields(separator.trim(line)).len();
-        let Some(full) = separator::lines(bytes).position(|line| count(line) == cells) else { return Ok(()) };
-        self.number = full + 1;
-        Err(self.wrong_length(cells, self.labels() + self.target.as_ref().map_or(0, |target| target.sensor.taxels())))
     }
 
     /// What is still to be refused at the end: commas or points that may be either.
     pub(super) fn unclear(&self) -> Result<(), FrameError> {
-        let open =
-            (0..MARKS.len()).find_map(|mark| Some((mark, self.unclear[mark].clone()?)).filter(|_| !self.decimal[mark]));
-        let Some((mark, (line, column, text))) = open else { return Ok(()) };
-        Err(FrameError::Thousands { path: self.path.clone(), line, column, text, mark: MARKS[mark] })
+        self.marks.open().map_or(Ok(()), |unclear| Err(thousands(&self.path, unclear)))
     }
+
+    /// Ends the reading of these rows.
+    ///
+    /// # Errors
+    ///
+    /// As [`Lines::unclear`]. A column behind the values that is blank on some lines, and whose other lines were left out.
+    pub(super) fn end(mut self, text: &mut Text) -> Result<(), FrameError> {
+        self.unclear()?;
+        if let Some((line, found)) = self.too_long
+            && self.padded == Some(found)
+        {
+            self.number = line;
+            let taxels = self.target.as_ref().map_or(0, |target| target.sensor.taxels());
+            return Err(self.wrong_length(found, self.labels() + taxels));
+        }
+        text.labels = self.labels();
+        text.remarks = self.remarks();
+        let bad = self.bad.map_or(Vec::new(), |(bad, _)| bad);
+        let place = |(before, line): (usize, &usize)| before + text.lines.partition_point(|kept| kept < line);
+        text.skipped = bad.iter().enumerate().map(place).collect();
+        text.header = self.header;
+        Ok(())
+    }
+}
+
+fn thousands(path: &Path, unclear: &Unclear) -> FrameError {
+    let Unclear { place: [line, column], text, mark } = unclear.clone();
+    FrameError::Thousands { path: path.to_path_buf(), line, column, text, mark }
 }
 
 /// Reads all rows of a text, see [`Lines::row`], or blocks of rows where the shape of the file says so.
@@ -436,7 +382,7 @@ pub(super) fn read(
     if let Some(target) = target.filter(|_| layout.first() == 0 && layout.columns.is_none())
         && let Some(blocks) = blocks::join(path, bytes, layout, target)?
     {
-        return lines.blocks(&blocks, target, wrong_length);
+        return blocks.read(lines, target, wrong_length);
     }
     let mut text = Text::default();
     let mut labels: Vec<bool> = Vec::new();
@@ -451,71 +397,17 @@ pub(super) fn read(
         text.rows.push(row);
         text.lines.push(lines.number);
     }
-    lines.unclear()?;
-    lines.padding(bytes)?;
-    if let Some(first) = text.rows.first().cloned() {
-        let is_again = |row: usize| text.rows[row] == first && labels[row] == labels[0];
-        let others: Vec<usize> = (1..text.rows.len()).filter(|&row| !is_again(row)).collect();
-        let rows: Vec<&Vec<f64>> = others.iter().map(|&row| &text.rows[row]).collect();
-        // Its label is a word where all others are numbers.
-        let is_labelled = target.is_some()
-            && is_whole(&first)
-            && !rows.is_empty()
-            && !labels[0]
-            && others.iter().all(|&row| labels[row]);
-        // A single row may be a frame whose values happen to ascend.
-        let is_numbered = !rows.is_empty() && lines.is_numbered(&first, &rows);
-        if is_numbered || lines.heads.is_empty() && is_labelled {
-            lines.number = text.lines[0];
-            lines.take_for_header(&[], &first);
-            text.rows = rows.into_iter().cloned().collect();
-            text.lines = others.iter().map(|&row| text.lines[row]).collect();
-        }
+    if target.is_some() && lines.heads.is_empty() && header::is_guessed(&text.rows, &labels) {
+        let first = text.rows[0].clone();
+        let is_head: Vec<bool> =
+            (0..labels.len()).map(|row| text.rows[row] == first && labels[row] == labels[0]).collect();
+        lines.number = text.lines[0];
+        lines.numbered(first[first.len() - 1]);
+        let mut heads = is_head.iter();
+        text.rows.retain(|_| heads.next() == Some(&false));
+        let mut heads = is_head.iter();
+        text.lines.retain(|_| heads.next() == Some(&false));
     }
-    text.order = lines.header.order.take();
-    text.labels = lines.labels();
-    text.remarks = lines.remarks();
-    let bad = lines.bad.map_or(Vec::new(), |(bad, _)| bad);
-    let place = |(before, line): (usize, &usize)| before + text.lines.partition_point(|kept| kept < line);
-    text.skipped = bad.iter().enumerate().map(place).collect();
+    lines.end(&mut text)?;
     Ok(text)
-}
-
-/// The column of a taxel behind the labels, from 1.
-pub(super) fn column(labels: usize, order: Option<&[usize]>, taxel: usize) -> usize {
-    let place = order.and_then(|order| order.iter().position(|&other| other == taxel));
-    labels + place.unwrap_or(taxel) + 1
-}
-
-/// What separates the numbers of a line, where that is nothing that separates values here.
-fn foreign(content: &[u8]) -> Option<&'static str> {
-    const SEPARATORS: [(char, &str); 5] = [
-        ('|', "\"|\""),
-        (':', "\":\""),
-        ('/', "\"/\""),
-        ('\u{a0}', "a no-break space"),
-        ('\u{202f}', "a narrow no-break space"),
-    ];
-    let text = std::str::from_utf8(content).ok()?;
-    let separates = |&(separator, _): &(char, &str)| {
-        let ends = |c: char| c == separator || c.is_whitespace();
-        let mut fields = text.trim_matches(ends).split(separator);
-        fields.clone().nth(1).is_some() && fields.all(|field| field.trim().parse::<f64>().is_ok())
-    };
-    SEPARATORS.iter().find(|&separator| separates(separator)).map(|&(_, name)| name)
-}
-
-/// Whether all values are those of a count from 0 on.
-fn is_whole(row: &[f64]) -> bool {
-    row.len() >= FEWEST_NUMBERED && row.iter().all(|&value| value >= 0.0 && value.fract() == 0.0)
-}
-
-/// Whether values are whole and each is larger than the one before, as the numbers of a sensor's taxels with gaps.
-fn ascends(row: &[f64]) -> bool {
-    is_whole(row) && row.windows(2).all(|pair| pair[1] > pair[0])
-}
-
-/// Whether a field is that of a header: text, of any encoding, and no number of any kind.
-fn no_number(field: &[u8]) -> bool {
-    String::from_utf8_lossy(field).replace(',', ".").parse::<f64>().is_err()
 }

@@ -96,7 +96,24 @@ fn a_header_of_sensor_numbers_is_none_of_the_frames() {
     assert_eq!(read("left,1,5,3,4,5,7\nright,1,2,3,4,6,9\n", 1).unwrap().frames.len(), 2);
     let mut lines = FrameLines::new(Path::new("port"), &pad(""), 0);
     assert!(lines.frame(b"3,5,7,11,12,20\n").unwrap().is_none() && lines.remark().is_some());
-    assert!(lines.frame(b"3,5,7,11,12,21\n").unwrap().is_some());
+    assert!(lines.frame(b"3,5,7,11,12,20\n").unwrap().is_some(), "a constant load");
+    assert_eq!(read("3,5,7,11,12,20\n3,5,7,11,12,20\n3,5,7,9,8,20\n", 0).unwrap().frames.len(), 3);
+    // Counts of a few taxels without load.
+    let few = Design { sensor: golden::sensor::Sensor { columns: 2, ..pad("").sensor }, ..pad("") };
+    let counts = b"0,0,1,1\n1,0,1,1\n0,0,1,1\n1,0,2,3\n";
+    for from in [0, 8, 24] {
+        let found = read_bytes("f.csv", &counts[from..], &few, 0).unwrap();
+        assert_eq!(found.frames.len(), 4 - from / 8, "{:?}", found.remark);
+    }
+    // Readings that are not there are no names.
+    let skip = Layout { skip_bad: true, ..Layout::default() };
+    for (text, skipped) in [
+        (format!("NA,NA,NA,NA,NA,NA\n{LINES}"), 0),
+        (format!("p0,p1,p2,p3,p4,p5\n--,--,--,--,--,--\n{LINES}"), 0),
+        ("-7.5 -1 0\n2 -3 5\n\n- -1 0\n2 -3 5\n\n-8 -2 1\n0.5 -4 6\n".to_owned(), 1),
+    ] {
+        assert_eq!(both(read(&text, skip.clone())).skipped, [skipped], "{text:?}");
+    }
 }
 
 /// A tab beside a blank cell separates as a comma does.
@@ -112,6 +129,7 @@ fn blank_cells_at_either_end_of_a_line() {
         ("", format!("time,p0,p1,p2,p3,p4,p5,t1\n,{a},900\n"), Layout::default(), good.clone()),
         ("", format!("x,{a},9,8\n,{a},9,8\n"), columns, Ok(vec![A.to_vec(); 2])),
         ("", format!(",{a}\n"), 1.into(), good.clone()),
+        ("", format!("\u{feff}0,{a}\n"), 1.into(), good.clone()),
         // Values that are not there.
         ("", format!("{a}\n,-1,0,2,-3,5\n-7.5,-1,0,2,-3,\n"), skip.clone(), good.clone()),
         ("", format!("p0,p1,p2,p3,p4,p5,sum\n{a},9\n,-1,0,2,-3,5,9\n"), skip.clone(), good.clone()),
@@ -122,7 +140,8 @@ fn blank_cells_at_either_end_of_a_line() {
         ("dead = [0, 5]", ",-1,0\n2,-3,\n".to_owned(), 0.into(), Ok(vec![vec![0.0, -1.0, 0.0, 2.0, -3.0, 0.0]])),
         // Columns that are blank on each line are none; one that is so on some is the total.
         ("", format!("{a},,\n{a},,\n"), Layout::default(), Ok(vec![A.to_vec(); 2])),
-        ("", format!("1,{a}\n2,-7.5,-1,0,2,-3,\n"), skip, Err("line 1: the line ends at column 7 where 6")),
+        ("", format!("1,{a}\n2,-7.5,-1,0,2,-3,\n"), skip.clone(), Err("line 1: the line ends at column 7 where 6")),
+        ("", format!("a,b,c,d,e,f,note\n{a},\n-7.5,-1,x,2,-3,5,\n"), skip, good),
     ] {
         for separator in [",", ";", "\t"] {
             let text = text.replace(',', separator);
@@ -148,7 +167,7 @@ fn numbers_above_the_frames_are_a_header() {
         (format!("frame,3,5,7,11,12,20\n{labelled}frame,3,5,7,11,12,20\n"), 1, false),
         (format!("S,S,S,S,S,S\n1,2,3,4,5,6\n{LINES}S,S,S,S,S,S\n1,2,3,4,5,6\n"), 0, true),
         (format!("0,1,2,0,1,2\n0,0,0,1,1,1\n{LINES}"), 0, false),
-        (format!("1,1,1,2,2,2\n1,2,3,1,2,3\n{LINES}"), 0, false),
+        (format!("1,2,3,1,2,3\n1,1,1,2,2,2\n{LINES}"), 0, false),
         // As pandas writes its index, and as others write times and totals.
         (format!(",0,1,2,3,4,5\n{labelled}"), 0, false),
         (format!("frame,1,2,3,4,5,6\n{labelled}"), 0, false),
@@ -191,11 +210,32 @@ fn names_say_which_taxel_a_column_is() {
         let remark = both(read(&text, 0)).remark.unwrap_or_default();
         assert_eq!(remark.contains(said), is_said, "{text:?}: {remark}");
     }
+    // On a square, where words say which is the row, and where they do not.
+    let square = Design { sensor: golden::sensor::Sensor { rows: 3, ..pad("").sensor }, ..pad("") };
+    let by = |words: [&str; 2]| {
+        let names: Vec<_> = (0..9).map(|at| format!("{}{}{}{}", words[0], at / 3, words[1], at % 3)).collect();
+        let text = format!("{}\n8,7,6,5,4,3,2,1,9\n", names.join(","));
+        read_bytes("f.csv", text.as_bytes(), &square, 0).unwrap().frames[0].clone()
+    };
+    let [in_order, transposed] = [[8, 7, 6, 5, 4, 3, 2, 1, 9], [8, 5, 2, 7, 4, 1, 6, 3, 9]].map(|of| of.map(f64::from));
+    for (words, frame) in [
+        (["c", "_"], in_order),
+        (["R", "C"], in_order),
+        (["row ", " column "], in_order),
+        (["taxel_x", "_y"], transposed),
+        (["c", "r"], transposed),
+    ] {
+        assert_eq!(by(words), frame, "{words:?}");
+    }
+    let nc = read_bytes("f.csv", format!("p0,p1,p2,nc,p4,p5\n{LINES}").as_bytes(), &pad("dead = [3]"), 0);
+    assert_eq!(nc.unwrap().frames.len(), 2);
     // A header behind #, as of numpy.savetxt; words of a remark are none.
     for (text, is_said) in [
         (format!("# of June\n# p5,p4,p3,p2,p1,p0\n{turned}"), true),
         (format!("# time p0 p1 p2 p3 p4 p5\n{}", LINES.replace("-7.5", "0,-7.5").replace("-8", "1,-8")), false),
         (format!("# of the time of six taxels\n# taxels 5 4 3 2 1 0\n{LINES}"), false),
+        (format!("# Time: 2024-05-03 12:30:01 UTC device 4\n{LINES}"), false),
+        (format!("# Time: 2024-05-03 12:30:01 UTC device 4\n{}", LINES.replace(',', " ")), false),
     ] {
         let remark = both(read(&text, 0)).remark.unwrap_or_default();
         assert_eq!(remark.contains(said), is_said, "{text:?}: {remark}");
@@ -222,6 +262,9 @@ fn units_above_the_frames() {
         (format!("{names}[N/cm²],[N/cm²],[N/cm²],[N/cm²],[N/cm²],[N/cm²]\n"), 1e4),
         ("p0 (kPa),p1 (kPa),p2 (kPa),p3 (kPa),p4 (kPa),p5 (kPa)\n".to_owned(), 1e3),
         ("p0_psi,p1_psi,p2_psi,p3_psi,p4_psi,p5_psi\n".to_owned(), 6_894.757_293),
+        ("p0 N/cm2,p1 N/cm2,p2 N/cm2,p3 N/cm2,p4 N/cm2,p5 N/cm2\n".to_owned(), 1e4),
+        (format!("{names}MPa,MPa,MPa,MPa,MPa,MPa\n"), 1e6),
+        (format!("{names}MN/m2,MN/m2,MN/m2,MN/m2,MN/m2,MN/m2\n"), 1e6),
         ("a (g/cm2),b (g/cm2),c (g/cm2),d (g/cm2),e (g/cm2),f (g/cm2)\n".to_owned(), 98.066_5),
         ("p0 (Pa),p1 (Pa),p2 (Pa),p3 (Pa),p4 (Pa),p5 (Pa)\n".to_owned(), 1.0),
         (format!("{names}raw,raw,raw,raw,raw,raw\n"), 1.0),
@@ -242,8 +285,10 @@ fn units_above_the_frames() {
         format!("t,{names}ms,kPa,kPa,kPa,kPa,kPa,kPa\n{}", LINES.replace("-7.5", "0,-7.5").replace("-8", "5,-8"));
     assert_eq!(read(&text, 0).unwrap().times, Some(vec![0.0, 0.005]));
     for (unit, pascals) in [("N/cm2", 1e4), ("N/mm²", 1e6), ("kg/cm^2", 98_066.5), ("g/cm2", 98.066_5)] {
-        let found = read(&format!("UNITS {unit}\n1,2,3\n4,5,6\n"), 0).unwrap();
-        assert!((found.frames[0][0] / -pascals - 1.0).abs() < 1e-9, "{unit}: {:?}", found.frames);
+        for words in ["UNITS ", "Unit of measure: ", "pressure_unit: ", "Pressure unit is "] {
+            let found = read(&format!("{words}{unit}\n1,2,3\n4,5,6\n"), 0).unwrap();
+            assert!((found.frames[0][0] / -pascals - 1.0).abs() < 1e-9, "{words}{unit}: {:?}", found.frames);
+        }
     }
     let found = read("UNITS raw\n1,2,3\n4,5,6\n", 0).unwrap();
     assert!(found.frames[0][0] == 1.0 && found.remark.unwrap().contains("unit raw, which is no known pressure"));

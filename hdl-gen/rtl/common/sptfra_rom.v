@@ -6,7 +6,7 @@
 //
 // Latency: 1 cycle, held while enable is low. One read a cycle.
 //
-// A block memory holds 4,096 words of nine bits with its parity bits, and deeper ones do not use these. So banks take
+// A block memory holds 4,096 words of nine bits with its parity bits, which a deeper one cannot use. So banks take
 // the fewest block memories. A register selects among the banks' outputs, in one LUT for three banks.
 
 `default_nettype none

@@ -4,9 +4,9 @@
 // AXI4-Lite port of a register bank, 32 bits. Write address and write data come in either order, one write and one
 // read at a time. The bank answers in the same cycle.
 //
-// Address and data are registered on the way in, responses on the way out. Where no register is, a read gives zero
-// and a write changes nothing: an error on the bus would stop many processors. bad_access is high for a cycle then. A
-// write acts one cycle after its address and data, once the response before it is taken.
+// Address and data are registered on the way in, responses on the way out. Where no register is, a read gives zero,
+// a write changes nothing and bad_access is high for a cycle. An error on the bus would stop many processors. A write
+// acts one cycle after the later of its address and data, once the response before it is taken.
 
 `default_nettype none
 

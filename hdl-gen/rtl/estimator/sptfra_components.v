@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// One-pass connected-component labelling, one taxel a cycle in raster order: counts components with the least sum.
+// One-pass connected-component labelling, one taxel a cycle in raster order: it counts components whose sum reaches
+// `least`.
 //
 // Seeds that are neighbours along x or y are of one component. Its sum is that of |w|. The labels of the last row's
 // taxels stand in a shift register, one step longer than a row. Each row ends with a step that is no seed. A taxel
@@ -32,7 +33,7 @@ module sptfra_components #(
     input  wire seed,
     input  wire [LABEL_WIDTH-1:0] fresh, // label of a component that would begin here
     input  wire [DATA_BITS-1:0] weight, // a cycle later
-    // Components with the least sum: at most 12 have 5/64 of all
+    // Components whose sum reaches least: at most 12 have 5/64 of all
     output reg  [3:0] contacts
 );
 

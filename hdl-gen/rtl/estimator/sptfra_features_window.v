@@ -3,10 +3,10 @@
 //
 // A window of the taxels' shares around the contact, folded into parity classes: the words of the network.
 //
-// The window has 2 HALF_X + 1 by 2 HALF_Y + 1 taxels about the taxel next to the centroid of the compression. A word
-// of four classes for each of its places comes first. Then follow 1, mu_x, mu_y and the centroid's distance from the
-// middle. All have 19 fraction bits. From start to the first of them: 11 cycles; then one a cycle, the last with
-// done.
+// The window has 2 HALF_X + 1 by 2 HALF_Y + 1 taxels about the taxel nearest to the centroid of the compression. A
+// word of four classes for each of its places comes first. Then follow 1, mu_x, mu_y and the centroid's offset from
+// that taxel in x and y. All have 19 fraction bits. From start to the first of them: 11 cycles; then one a cycle, the
+// last with done.
 
 `default_nettype none
 

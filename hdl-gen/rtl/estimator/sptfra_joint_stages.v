@@ -5,8 +5,8 @@
 //
 // The search takes a frame one cycle after its u_q, its sums and CeAn's results are there. The features take the
 // search's result, the correction that of the features. A stage holds its result until the next one takes it, and may
-// begin anew in the cycle after. The features show the correction their window first. Without features the correction
-// comes after the search.
+// begin anew in the cycle after. The features begin anew only after the correction has their window. Without features
+// the correction comes after the search.
 
 `default_nettype none
 

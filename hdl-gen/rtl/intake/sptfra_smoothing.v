@@ -3,9 +3,9 @@
 //
 // Exponential moving average of each taxel over frames, with the weight 2^-rate; a large step of any taxel restarts it.
 //
-// Latency: 4 cycles from a beat to its stresses and their new averages. `decided` rises one cycle after the frame's
-// end, later by the logarithm of the samples. From then on `averaged` says whether the frame is averaged, or restarts
-// the average. Averages are double-buffered: a frame writes the spare bank, and a good frame swaps the banks.
+// Latency: 4 cycles from a beat to its stresses and their new averages. `decided` rises one cycle after `out_ends`,
+// later by the logarithm of the samples. From then on `averaged` says whether the frame is averaged, or restarts the
+// average. Averages are double-buffered: a frame writes the spare bank, and a good frame swaps the banks.
 
 `default_nettype none
 

@@ -4,8 +4,8 @@
 // Field memory of a folded grid, with the forces f = A+ r + [mu_x |w|, mu_y |w|, -|w|] of every taxel at its output.
 // WORDS components leave it a cycle in the order of the output: x, y, z, taxel by taxel.
 //
-// It is written a quad at a time. It holds A_p r of two frames and |w|, which comes long before its use, of four. Up
-// to four components belong to two neighbours at most; each has a copy of the memory. From step to forces: 6 cycles,
+// It is written a quad at a time. It holds A_p r of two frames, and |w| of four: |w| comes long before its use. Up to
+// four components belong to two neighbours at most; each has a copy of the memory. From step to forces: 6 cycles,
 // with several words 7.
 
 `default_nettype none

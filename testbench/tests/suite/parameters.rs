@@ -13,7 +13,7 @@ const SENSELESS: [(&str, &str, &str, &str); 37] = [
     ("frame_writer", "DATA_BITS", "36", "data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded"),
     ("frame_writer", "SAMPLES", "3", "samples_of_a_beat_must_be_1_2_4_or_8"),
     ("bz", "EXPECTED_STAGES", "6", "the_plan_counts_on_other_stages"),
-    ("creep", "SHARE", "0", "the_share_has_18_fraction_bits_and_more"),
+    ("creep", "SHARE", "2228224", "the_share_has_18_fraction_bits_and_more"),
     ("cean", "ROWS", "65", "columns_and_rows_must_be_2_to_64"),
     ("spmv_array", "WAYS", "3", "ways_must_be_1_or_4"),
     ("spmv_array", "LANES", "129", "lanes_must_be_1_to_128"),

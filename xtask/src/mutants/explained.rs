@@ -64,3 +64,24 @@ impl Explained {
         self.survivor.iter().find(known).map(|survivor| survivor.why.as_str())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use hdl_gen::cores::Multiplier;
+    use hdl_gen::emit::rtl::library;
+
+    use super::*;
+
+    /// One whose line is gone explains nothing.
+    #[test]
+    fn the_lines_of_survivors_stand_in_the_library() {
+        let explained = Explained::load(Path::new("survivors.toml")).expect("a list of survivors");
+        let library = library(Multiplier::Whole);
+        let module = |file: &str| library.get(file.strip_prefix("rtl/")?.strip_suffix(".v")?).copied();
+        let known: Vec<_> = explained.survivor.iter().filter_map(|of| Some((of, module(&of.file)?))).collect();
+        assert!(known.len() > 50);
+        for (Survivor { file, before, after, .. }, text) in known {
+            assert!(text.lines().any(|line| line.trim() == before) && before != after, "{file}: {before}");
+        }
+    }
+}

@@ -8,6 +8,8 @@ use crate::support::faults::broken;
 use crate::support::{by_plan, in_parallel, planned, shipped, with_joint};
 use golden::design::{Design, Estimator, Outputs, Overrun, PlanKind};
 use golden::progress::Progress;
+use hdl_gen::cores::Multiplier;
+use hdl_gen::emit::rtl::library;
 use xtask::mutants::{self, Kind, mutants};
 use xtask::stress::{self, Commits, StressError, stress};
 
@@ -172,6 +174,11 @@ type Fault<'a> = (&'a Design, &'a str, &'a str, &'a str);
 
 /// Copies with a fault each that no batch notices.
 fn missed(cases: &[Fault<'_>]) -> Vec<String> {
+    let library = library(Multiplier::Whole);
+    for (_, module, from, _) in cases {
+        let text = library.get(module).expect("a module of the library");
+        assert_eq!(text.matches(from).count(), 1, "{from:?} in {module}");
+    }
     let cases = some_of(cases);
     let noticed = in_parallel(&cases, |&&(design, module, from, to)| {
         let plan = planned(design);

@@ -1,6 +1,6 @@
 //! What the columns of a table mean, by their names and units.
 
-use crate::frames::seconds;
+use crate::units::{force_or_pressure, seconds};
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,8 +14,6 @@ pub(super) enum Meaning {
     Time,
 }
 
-/// Newtons of a kilogram's weight.
-const GRAVITY: f64 = 9.806_65;
 /// What the columns of a header are, and what their unit is worth in newtons or pascals.
 pub(super) fn meanings(
     names: &[String],
@@ -35,7 +33,7 @@ pub(super) fn meanings(
             (lower[..cut].trim(), lower[cut..].trim_matches(|c: char| !c.is_alphanumeric() && c != 'µ'));
         if unit.is_empty()
             && let Some((before, after)) = base.rsplit_once(['_', ' '])
-            && worth(after).is_some()
+            && force_or_pressure(after).is_some()
             && meaning(before).is_some()
         {
             (base, unit) = (before, after);
@@ -49,10 +47,10 @@ pub(super) fn meanings(
             continue;
         };
         let is_mass = base.contains("mass");
-        let factor = match (unit.to_lowercase().as_str(), meaning) {
+        let factor = match (unit, meaning) {
             ("", Meaning::Force(_)) if is_mass => return Err(format!("column {name:?} has no unit")),
             ("", _) | (_, Meaning::Contact | Meaning::Time) => 1.0,
-            (unit, meaning) => match worth(unit) {
+            (unit, meaning) => match force_or_pressure(unit) {
                 Some((factor, pressure)) if pressure == (meaning == Meaning::Pressure) => factor,
                 _ => {
                     return Err(format!(
@@ -87,41 +85,6 @@ fn meaning(name: &str) -> Option<Meaning> {
         }
         "p" | "pressure" | "pressures" | "press" => Meaning::Pressure,
         "contact" | "place" | "hold" | "trial" | "position" | "point" => Meaning::Contact,
-        _ => return None,
-    })
-}
-
-/// What a unit of pressure is worth in pascals: one of its own, or a force on an area.
-pub(crate) fn pressure_unit(unit: &str) -> Option<f64> {
-    let unit = unit.to_lowercase().replace('²', "2").replace('^', "");
-    if let Some((force, area)) = unit.split_once('/') {
-        let on_m2 = match area {
-            "mm2" => 1e6,
-            "cm2" => 1e4,
-            "m2" => 1.0,
-            _ => return None,
-        };
-        return worth(force).and_then(|(force, pressure)| (!pressure).then_some(force * on_m2));
-    }
-    worth(&unit).and_then(|(factor, pressure)| pressure.then_some(factor))
-}
-
-/// What a unit is worth in newtons, or in pascals, and whether it is a pressure.
-fn worth(unit: &str) -> Option<(f64, bool)> {
-    Some(match unit {
-        "n" | "newton" | "newtons" => (1.0, false),
-        "mn" => (1e-3, false),
-        "kn" => (1e3, false),
-        "g" | "gf" | "gram" | "grams" => (1e-3 * GRAVITY, false),
-        "kg" | "kgf" => (GRAVITY, false),
-        "lb" | "lbf" => (4.448_221_615, false),
-        "pa" => (1.0, true),
-        "kpa" => (1e3, true),
-        "mpa" => (1e6, true),
-        "mbar" | "hpa" => (100.0, true),
-        "bar" => (1e5, true),
-        "psi" => (6_894.757_293, true),
-        "mmhg" => (133.322_387, true),
         _ => return None,
     })
 }

@@ -25,7 +25,6 @@ mod uniform;
 
 use std::path::PathBuf;
 
-pub(crate) use columns::pressure_unit;
 pub use force::fit_forces;
 pub use page::page;
 pub use report::{Errors, Hold, Recorded, TaxelGain};

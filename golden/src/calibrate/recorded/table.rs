@@ -8,7 +8,10 @@ use std::path::Path;
 use super::RecordedError;
 use super::columns::{Meaning, meanings};
 use crate::frames::{Array, Frames, read_array};
-use crate::separator::{self, Comma, Separator, is_unknown};
+use crate::separator::{self, Marks, Separator, Unclear, is_unknown};
+
+/// Frames and forces must have this share of the frames' time in common.
+const COMMON: f64 = 0.5;
 
 /// What was measured, frame by frame: forces and pressures have an entry for each, known or not.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,12 +38,10 @@ impl Measured {
     pub fn of_pressures(pressures: Vec<Option<f64>>) -> Self {
         Self { forces: vec![[None; 3]; pressures.len()], pressures, ..Self::default() }
     }
-}
 
-impl Measured {
-    /// What was measured with these frames, where those that were left out have lines.
+    /// What was measured with these frames, without the lines of those that were left out.
     #[must_use]
-    pub fn of(self, frames: &Frames) -> Self {
+    pub fn without_skipped(self, frames: &Frames) -> Self {
         Self {
             forces: frames.kept(self.forces),
             pressures: frames.kept(self.pressures),
@@ -49,12 +50,7 @@ impl Measured {
             remarks: self.remarks,
         }
     }
-}
 
-/// Frames and forces must have this share of the frames' time in common.
-const COMMON: f64 = 0.5;
-
-impl Measured {
     /// What was measured at the times of the frames, in seconds: between two lines a straight line, beyond the first and the
     /// last nothing. Without times of its own it stays as it is.
     ///
@@ -120,6 +116,8 @@ struct Raw {
     units: Option<Vec<String>>,
     /// Line number and fields.
     rows: Vec<(usize, Vec<String>)>,
+    /// What separates the fields.
+    separator: Separator,
 }
 
 /// Reads the forces of a file: columns `F_x`, `F_y`, `F_z`, of which any may be missing, in newtons unless the header
@@ -199,7 +197,7 @@ fn read(path: &Path, example: &str, guess: &Guess) -> Result<Measured, RecordedE
     let contact = named.iter().position(|column| matches!(column, Some((Meaning::Contact, _))));
     let mut measured = Measured { remarks, ..Measured::default() };
     let (mut contacts, mut times) = (Vec::new(), Vec::new());
-    let (mut decimal, mut unclear) = (false, None);
+    let mut marks = Marks::default();
     for (line, fields) in &raw.rows {
         let (mut force, mut pressure, mut time) = ([None; 3], None, f64::NAN);
         for (column, told) in named.iter().enumerate() {
@@ -208,13 +206,8 @@ fn read(path: &Path, example: &str, guess: &Guess) -> Result<Measured, RecordedE
             if meaning == Meaning::Contact || is_unknown(text) {
                 continue;
             }
-            match Comma::of(text.as_bytes()) {
-                Some(Comma::Decimal) => decimal = true,
-                Some(Comma::Unclear) => {
-                    unclear.get_or_insert((*line, column + 1, text));
-                }
-                None => {}
-            }
+            // What is no number at all is refused below.
+            let _ = marks.take(text.as_bytes(), raw.separator, [*line, column + 1]);
             let value =
                 text.replace(',', ".").parse::<f64>().ok().filter(|value| value.is_finite()).ok_or_else(|| {
                     let shown: String = text.chars().take(40).collect();
@@ -235,13 +228,13 @@ fn read(path: &Path, example: &str, guess: &Guess) -> Result<Measured, RecordedE
         measured.pressures.push(pressure);
         contacts.extend(contact.map(|column| fields.get(column).cloned().unwrap_or_default()));
     }
-    if let (false, Some((line, column, text))) = (decimal, unclear) {
+    if let Some(Unclear { place: [line, column], text, mark }) = marks.open() {
         return Err(wrong(
             format!(
-                "line {line}, column {column}: \"{text}\" has a decimal comma or a separator of thousands, and three digits \
-                 follow every comma"
+                "line {line}, column {column}: \"{text}\" has a decimal {mark} or a separator of thousands, and three digits \
+                 follow every {mark}"
             ),
-            "write decimal points, or remove the separators".to_owned(),
+            "write decimal points between commas, or remove the separators".to_owned(),
         ));
     }
     measured.contacts = contact.map(|_| contacts);
@@ -267,7 +260,7 @@ fn raw(path: &Path) -> Result<Raw, RecordedError> {
         let text = |value: &f64| if value.is_nan() { String::new() } else { format!("{value:?}") };
         let rows = values.chunks(columns).enumerate();
         let rows = rows.map(|(row, values)| (row + 1, values.iter().map(text).collect())).collect();
-        return Ok(Raw { names: None, units: None, rows });
+        return Ok(Raw { names: None, units: None, rows, separator: Separator::Spaces });
     }
     let bytes = std::fs::read(path).map_err(|error| wrong(format!("cannot be read: {error}")))?;
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
@@ -336,5 +329,5 @@ fn raw(path: &Path) -> Result<Raw, RecordedError> {
     let mut heads = heads.iter().map(fields);
     let commented = || comments.first().map(fields).filter(|names| names.len() == columns);
     let names = heads.next().or_else(commented);
-    Ok(Raw { names, units: heads.next(), rows })
+    Ok(Raw { names, units: heads.next(), rows, separator: separator.unwrap_or(Separator::Spaces) })
 }

@@ -97,13 +97,16 @@ fn frames_that_are_left_out_take_their_lines_along() {
     let kept: Vec<_> = (0..recording.frames.len()).filter(|place| !bad.contains(place)).collect();
     assert_eq!(read.frames, kept.iter().map(|&place| recording.frames[place].clone()).collect::<Vec<_>>());
     let forces: Vec<_> = kept.iter().map(|&place| recording.measured.forces[place]).collect();
-    assert_eq!(recording.measured.clone().of(&read).forces, forces);
+    assert_eq!(recording.measured.clone().without_skipped(&read).forces, forces);
     // A blank first cell beside a tab is one.
     std::fs::write(&path, "F_x\tF_y\tF_z\n\t0.2\t-5\n0.1\t0.2\t-5\n").unwrap();
     let read_back = read_forces(&path).unwrap().forces;
     assert_eq!(read_back, [[None, Some(0.2), Some(-5.0)], [Some(0.1), Some(0.2), Some(-5.0)]]);
+    // Points between semicolons.
+    std::fs::write(&path, "F_x;F_y;F_z\n1;2;-1.226\n2;1;-2.310\n").unwrap();
+    assert!(read_forces(&path).unwrap_err().to_string().contains("three digits follow every point"));
     // Who left them out of both has one line for each that is kept.
-    assert_eq!(Measured::of_forces(forces.clone()).of(&read).forces, forces);
+    assert_eq!(Measured::of_forces(forces.clone()).without_skipped(&read).forces, forces);
 }
 
 #[test]

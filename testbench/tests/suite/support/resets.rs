@@ -48,5 +48,7 @@ pub fn in_each_cycle(plan: &Plan, built: &Built) -> Result<(), String> {
     let traffic = Traffic::new(&sent, 8 * timeout(plan)).with_resets(&resets);
     let outcome = exchange(&mut built.load(5).expect("loads"), &traffic, |_| ()).map_err(|error| error.to_string())?;
     assert_eq!(outcome.resumed.len(), resets.len(), "every reset took place");
+    let mut between = outcome.between_resets(sent.len());
+    assert!(between.all(|(_, exchanges)| !exchanges.is_empty()), "a frame between all resets");
     judged(plan, &sent, &outcome)
 }

@@ -122,6 +122,11 @@ pub const PROOFS: &[Proof] = &[
                 "assign busy = ended || corrections_busy || smoothing_busy;",
                 "assign busy = 1'b0;",
             ),
+            (
+                "sptfra_frame_writer",
+                "assign busy = ended || corrections_busy || smoothing_busy;",
+                "assign busy = ended && corrections_busy || smoothing_busy;",
+            ),
             ("sptfra_frame_gate", "wire store = (index != BEYOND);", "wire store = 1'b1;"),
             ("sptfra_frame_gate", "in_frame <= !s_tlast;", "in_frame <= 1'b1;"),
             ("sptfra_frame_gate", "s_tready = in_frame || may_open", "s_tready = may_open"),
