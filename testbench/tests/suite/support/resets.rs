@@ -38,10 +38,13 @@ pub fn judged(plan: &Plan, packets: &[Vec<u32>], outcome: &Outcome) -> Result<()
 pub fn in_each_cycle(plan: &Plan, built: &Built) -> Result<(), String> {
     let interval = plan.timeline.interval_cycles;
     let mut random = ChaCha8Rng::seed_from_u64(11);
-    let sent: Vec<_> = (0..8 * interval).map(|_| frames::contact(plan, &mut random)).collect();
-    // A core that has been reset begins anew: moments count from the reset before.
+    // A core that has been reset begins anew: moments count from the reset before. Each gap holds a whole answer.
+    let gap = plan.timeline.latency_cycles + 2 * interval;
+    // Beside what is answered, a reset loses what waits.
+    let packets = interval * (gap / interval + 8);
+    let sent: Vec<_> = (0..packets).map(|_| frames::contact(plan, &mut random)).collect();
     let moments = (0..interval).scan(0, |cycle, moment| {
-        *cycle += 2 * interval + moment;
+        *cycle += gap + moment;
         Some(*cycle)
     });
     let resets: Vec<Reset> = moments.map(|cycle| Reset { cycle, length: 1 }).collect();
