@@ -1,6 +1,6 @@
 //! What pressed in each frame, what the taxels read without load, and where the converter ends.
 
-use super::lag;
+use super::lag::Lags;
 use super::table::Measured;
 use crate::design::Design;
 use crate::numbers::{magnitude, middle, sorted};
@@ -9,10 +9,16 @@ use crate::numbers::{magnitude, middle, sorted};
 pub(super) const REST: f64 = 0.01;
 /// Lines of the forces may be so much more or fewer than the frames.
 const LENGTHS: f64 = 0.1;
-/// Parts of a recording that are looked at for missing frames,
+/// A lag is as good as the best if it leaves at most so many times its variance.
+const APART: f64 = 2.0;
+/// Parts of a recording that are looked at for missing frames.
 const PARTS: usize = 8;
-/// and what another lag must leave no more of there: creep and curves let a wrong one look a little better.
-const LOSES_STEP: f64 = 4.0;
+/// The same as [`APART`] in a part, where creep and curves let a wrong lag look better.
+const APART_IN_PART: f64 = 4.0;
+/// A part tells something if its loads range over this share of the range of all.
+const TELLS: f64 = 0.5;
+/// Parts on either side of missing frames that agree, at least.
+const AGREE: usize = 2;
 
 /// What is wrong with a recording, and what to do.
 pub(super) type Wrong = (String, String);
@@ -35,7 +41,7 @@ pub(super) fn pair<'a>(design: &Design, frames: &'a [Vec<f64>], measured: &Measu
     let readings: Vec<f64> = frames.iter().map(sum).collect();
     // Pressures of a bladder rise in steps, which any lag fits.
     let loads: Vec<Option<f64>> = measured.forces.iter().map(|force| force[2]).collect();
-    let lag = lag::find(&readings, &loads, lag::APART).map_err(|[one, other]| {
+    let lag = Lags::of(&readings, &loads, APART).map_or(Ok(0), |lags| lags.best()).map_err(|[one, other]| {
         (
             format!(
                 "frames and loads do not begin together: {} fits the loads as well as {}",
@@ -48,21 +54,17 @@ pub(super) fn pair<'a>(design: &Design, frames: &'a [Vec<f64>], measured: &Measu
     let skip = |frames: isize| usize::try_from(frames).unwrap_or(0);
     let (frames, from) = (&frames[skip(-lag)..], skip(lag));
     let both = frames.len().min(lines - from);
-    let readings = &readings[skip(-lag)..][..both];
-    for begin in (0..PARTS).map(|part| part * both / PARTS) {
-        let part = begin..(begin + both / PARTS);
-        if let Err([late, _]) | Ok(late @ (..=-1 | 1..)) =
-            lag::find(&readings[part.clone()], &loads[from..][part], LOSES_STEP)
-        {
-            return Err((
-                format!(
-                    "frames and loads lose step: about frame {begin} they belong together when {} frames are left out",
-                    late.unsigned_abs()
-                ),
-                "frames or lines are missing: give both files a column of times, or cut them where it happens"
-                    .to_owned(),
-            ));
-        }
+    if let Some((place, count)) = missing(&readings[skip(-lag)..][..both], &loads[from..][..both]) {
+        let what = match count {
+            1 => "1 frame is".to_owned(),
+            -1 => "1 line of forces is".to_owned(),
+            2.. => format!("{count} frames are"),
+            _ => format!("{} lines of forces are", -count),
+        };
+        return Err((
+            format!("about frame {}, {what} missing", skip(-lag) + place + 1),
+            "give both files a column of times, or cut them there".to_owned(),
+        ));
     }
     let mut remarks = Vec::new();
     if lag != 0 {
@@ -81,6 +83,33 @@ pub(super) fn pair<'a>(design: &Design, frames: &'a [Vec<f64>], measured: &Measu
     measured.pressures = measured.pressures.iter().skip(from).take(both).copied().collect();
     measured.contacts = measured.contacts.map(|names| names.into_iter().skip(from).take(both).collect());
     Ok((&frames[..both], measured, remarks))
+}
+
+/// About where frames are missing, and how many; of lines of forces the negative number. What is missing shifts all parts
+/// that follow.
+fn missing(readings: &[f64], loads: &[Option<f64>]) -> Option<(usize, isize)> {
+    let range = |loads: &[Option<f64>]| {
+        let sorted = sorted(loads.iter().flatten().copied());
+        sorted.last().zip(sorted.first()).map_or(0.0, |(most, least)| most - least)
+    };
+    let (length, least) = (readings.len() / PARTS, TELLS * range(loads));
+    let part = |begin: usize| {
+        let loads = &loads[begin..][..length];
+        let lags = (range(loads) >= least).then(|| Lags::of(&readings[begin..][..length], loads, APART_IN_PART));
+        Some((begin, lags??))
+    };
+    let parts: Vec<(usize, Lags)> = (0..PARTS).filter_map(|number| part(number * length)).collect();
+    let begins = |lag: isize, other: isize| -> Vec<usize> {
+        parts.iter().filter(|(_, lags)| lags.allow(lag) && !lags.allow(other)).map(|(begin, _)| *begin).collect()
+    };
+    let lags: Vec<isize> = parts.iter().filter_map(|(_, lags)| lags.best().ok()).collect();
+    let mut pairs = lags.iter().flat_map(|&before| lags.iter().map(move |&after| (before, after)));
+    pairs.find_map(|(before, after)| {
+        let [earlier, later] = [begins(before, after), begins(after, before)];
+        let enough = earlier.len().min(later.len()) >= AGREE;
+        let (end, begin) = (earlier.last()? + length, *later.first()?);
+        (enough && end <= begin).then_some((usize::midpoint(end, begin), after - before))
+    })
 }
 
 /// Which frame and line belong together.
@@ -169,4 +198,85 @@ fn of_all(rest: &[f64], alive: &[usize]) -> Vec<f64> {
 
 pub(super) fn frames_of(count: usize) -> String {
     if count == 1 { "1 frame".to_owned() } else { format!("{count} frames") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What pairing says of frames that read `reading` of a load each, if these were measured.
+    fn paired(readings: &[f64], loads: &[f64]) -> Result<Vec<String>, Wrong> {
+        let text = "format = 3\nname = \"pad\"\n[algorithm]\nestimator = \"line\"\n[sensor]\ncolumns = 2\nrows = 2\n\
+                    pitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\npa_per_count = -2.0\n";
+        let design = Design::from_toml(text, "pad.toml").unwrap();
+        let frames: Vec<Vec<f64>> = readings.iter().map(|&reading| vec![reading; 4]).collect();
+        let measured = Measured::of_forces(loads.iter().map(|&load| [None, None, Some(-load)]).collect());
+        pair(&design, &frames, &measured).map(|(_, _, remarks)| remarks)
+    }
+
+    /// Between -1 and 1.
+    fn random(n: usize) -> f64 {
+        let bits = (n as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        ((bits ^ (bits >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 40) as f64 / f64::from(1 << 23) - 1.0
+    }
+
+    /// Touches of 4 to 13 frames, and as many of rest.
+    fn touches(count: usize) -> Vec<f64> {
+        let mut loads = Vec::new();
+        while loads.len() < count {
+            let [load, held, rest] = [0, 1, 2].map(|k| 1.0 + random(3 * loads.len() + k));
+            loads.extend(vec![2.0 + load; 4 + (5.0 * held) as usize]);
+            loads.extend(vec![0.0; 4 + (5.0 * rest) as usize]);
+        }
+        loads
+    }
+
+    /// Whichever file lacks what, wherever, and also if the files do not begin together.
+    #[test]
+    fn what_is_missing_is_told_by_file_number_and_frame() {
+        for (place, lost, begin) in [(0.5, 10, 0), (0.3, 3, 0), (0.7, 10, 0), (0.7, 1, 0), (0.7, 5, 20)] {
+            let all = touches(1600);
+            let at = (place * all.len() as f64) as usize;
+            let mut some = all.clone();
+            some.drain(at..at + lost);
+            for of_frames in [true, false] {
+                let cut = |values: &[f64]| values[begin..].to_vec();
+                let (readings, loads) = if of_frames { (cut(&some), all.clone()) } else { (all.clone(), cut(&some)) };
+                let (problem, remedy) = paired(&readings, &loads).unwrap_err();
+                let what = match (of_frames, lost) {
+                    (true, 1) => "1 frame is missing",
+                    (true, _) => &format!("{lost} frames are missing"),
+                    (false, 1) => "1 line of forces is missing",
+                    (false, _) => &format!("{lost} lines of forces are missing"),
+                };
+                assert!(problem.contains(what) && remedy.contains("column of times"), "{lost} {begin}: {problem}");
+                let said: f64 = problem.split(' ').nth(2).unwrap().trim_end_matches(',').parse().unwrap();
+                let expected = (at - if of_frames { begin } else { 0 }) as f64;
+                assert!((said - expected).abs() < 1600.0 / 8.0, "{lost} {begin}: {problem}, not {expected}");
+            }
+        }
+    }
+
+    /// A logger that is a little late all the time, as one part alone tells that is faster than the others.
+    #[test]
+    fn a_constant_delay_is_none_that_are_missing() {
+        let load = |n: usize| {
+            let turns = if n < 700 { n as f64 / 100.0 } else { n as f64 / 20.0 };
+            let swing = if n < 700 { 1.0 } else { 0.55 };
+            5.0 * (1.0 - swing * (turns * std::f64::consts::TAU).cos())
+        };
+        let loads: Vec<f64> = (0..800).map(load).collect();
+        let readings: Vec<f64> = (0..800).map(|n| 100.0 * (load(n + 2) + random(n))).collect();
+        paired(&readings, &loads).unwrap();
+    }
+
+    /// The square of a load looks late where a part ends within the only touch that it has.
+    #[test]
+    fn a_curve_is_none_that_are_missing() {
+        let mut loads = touches(1600);
+        loads[600..770].fill(0.0);
+        (770..850).for_each(|n| loads[n] = 0.1 * (n - 770) as f64);
+        let readings: Vec<f64> = loads.iter().map(|load| load * load).collect();
+        paired(&readings, &loads).unwrap();
+    }
 }
