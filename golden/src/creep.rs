@@ -14,16 +14,18 @@ pub const FRAMES: [f64; 2] = [2.0, 131_072.0];
 const TRIED: i32 = 1000;
 /// Seconds in which the weight is put down, at most.
 const SETTLES: f64 = 1.0;
-/// It lies when the readings rise by less than a tenth within so many seconds, and half of these have passed.
+/// Share of the largest reading at which this begins: creep may be several times the load.
+const BEGINS: f64 = 0.1;
+/// Seconds within which readings rise by less than a tenth once the weight lies; half of them are waited for.
 const WINDOW: f64 = 0.2;
-/// Behind them a constant load has at least so many frames.
+/// Fewest frames of constant load.
 const FEWEST: usize = 20;
 /// Without load readings change by less than this share of the load.
 const RESTS: f64 = 0.02;
 /// Rise of readings below which there is nothing to correct.
 const LEAST_RISE: f64 = 0.01;
-/// Frames may come later than the others by this share of their distance.
-const UNEVEN: f64 = 0.5;
+/// Frames or seconds, whichever is more, by which times may differ from even ones.
+const UNEVEN: [f64; 2] = [3.0, 0.1];
 /// Significant digits that are written.
 const DIGITS: i32 = 4;
 
@@ -53,20 +55,22 @@ impl Creep {
         -(-1.0 / self.frames()).exp_m1()
     }
 
-    /// Takes creep off a good frame of stresses, within `bound`, and lets it go on; `creep` is empty before the first frame, or
-    /// has the length of another sensor's.
+    /// Takes creep off a good frame of stresses, within `bound`, and lets it go on. Before the first frame `creep` is empty,
+    /// or of another sensor's length.
     pub fn remove(&self, creep: &mut Vec<f64>, frame: &mut [f64], bound: f64) {
+        let share = self.share();
         for (creep, stress) in taxels(creep, frame) {
             *stress = (*stress - *creep).clamp(-bound, bound);
-            *creep += self.share() * (self.strength * *stress - *creep);
+            *creep += share * (self.strength * *stress - *creep);
         }
     }
 
     /// Adds creep to a frame of true stresses, as a sensor does, and lets it go on.
     pub fn add(&self, creep: &mut Vec<f64>, frame: &mut [f64]) {
+        let share = self.share();
         for (creep, stress) in taxels(creep, frame) {
             let before = *creep;
-            *creep += self.share() * (self.strength * *stress - *creep);
+            *creep += share * (self.strength * *stress - *creep);
             *stress += before;
         }
     }
@@ -105,25 +109,28 @@ pub struct Fitted {
     pub held_s: f64,
     /// Share by which the readings rose in that time.
     pub rise: f64,
-    /// Standard deviation over the mean of the readings without creep.
-    pub left: f64,
+    /// Standard deviation of the corrected readings under the load, as a share of their mean.
+    pub residual_share: f64,
 }
 
-/// Seconds from frame to frame, from their times in seconds.
+/// Mean seconds from frame to frame, from their times in seconds. Clocks may be coarse, and single frames may be missing.
 ///
 /// # Errors
 ///
-/// A gap, times that do not rise, or fewer than two: what is wrong and what to do.
+/// A gap, another rate, times that fall, or fewer than two: what is wrong and what to do.
 pub fn interval(times: &[f64]) -> Result<f64, String> {
     let steps = || times.windows(2).map(|pair| pair[1] - pair[0]);
-    let interval = middle(steps());
-    let uneven = |step: &f64| !(0.0..=interval * (1.0 + UNEVEN)).contains(step);
-    if interval <= 0.0 || !interval.is_finite() {
+    let interval = steps().sum::<f64>() / steps().len() as f64;
+    if !(interval > 0.0 && interval.is_finite()) {
         return Err("its times do not rise from frame to frame".to_owned());
     }
-    match steps().enumerate().find(|(_, step)| uneven(step)) {
+    let allowed = (UNEVEN[0] * middle(steps())).max(UNEVEN[1]);
+    let uneven = times.iter().enumerate().any(|(n, time)| (time - times[0] - interval * n as f64).abs() > allowed);
+    let back = steps().enumerate().find(|(_, step)| *step < 0.0);
+    let gap = || steps().enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).filter(|_| uneven);
+    match back.or_else(gap) {
         Some((before, step)) => Err(format!(
-            "{step:.3} s pass after frame {}, where others are {interval:.3} s apart: record without gaps",
+            "{step:.3} s pass after frame {}, where the mean is {interval:.3} s: record at one rate, without gaps",
             before + 1
         )),
         None => Ok(interval),
@@ -131,24 +138,28 @@ pub fn interval(times: &[f64]) -> Result<f64, String> {
 }
 
 /// Finds strength and time constant from a step of load: `sums` are those of each frame's stresses in any unit, `seconds`
-/// apart, from a time without load on. What lies above half of the largest is under load.
+/// apart, from a time without load on.
 ///
 /// # Errors
 ///
 /// What the recording lacks and what to do.
 pub fn fit(sums: &[f64], seconds: f64) -> Result<Fitted, String> {
     let first = sums.first().copied().unwrap_or(0.0);
-    let loaded = |sum: &f64| (sum - first).abs() > 0.5 * magnitude(sums.iter().map(|sum| sum - first));
+    let [window, margin, most] = [WINDOW, 0.5 * WINDOW, SETTLES].map(|time| (time / seconds).ceil() as usize);
+    let loads = || sums.iter().map(|sum| (sum - first).abs());
+    let largest = magnitude(loads());
+    // The load itself is what readings reach before they creep.
+    let half = 0.5 * magnitude(loads().skip_while(|load| *load < BEGINS * largest).take(most + 1));
+    let loaded = |sum: &f64| (sum - first).abs() > half;
     let begin = sums.iter().position(loaded).unwrap_or(sums.len());
     let end = begin + sums[begin..].iter().position(|sum| !loaded(sum)).unwrap_or(sums.len() - begin);
     // The weight's way down is neither unloaded nor constant.
     let unloaded = &sums[..begin.div_ceil(2)];
     let level = mean(unloaded);
-    let [window, margin, most] = [WINDOW, 0.5 * WINDOW, SETTLES].map(|time| (time / seconds).ceil() as usize);
     let steady = |pair: &[f64]| (pair[window] - level).abs() < 1.1 * (pair[0] - level).abs();
-    let steady_from = sums[begin..end].windows(window + 1).position(steady).unwrap_or(most);
-    let settled = begin + (steady_from + margin).min(most);
-    let held: Vec<f64> = sums[settled.min(end)..end].iter().map(|sum| (sum - level).abs()).collect();
+    let steady_from = sums[begin..end].windows(window + 1).position(steady).unwrap_or(end - begin);
+    let settled = end.min(begin + steady_from + margin);
+    let held: Vec<f64> = sums[settled..end].iter().map(|sum| (sum - level).abs()).collect();
     if begin == 0 || held.len() < FEWEST {
         return Err(format!(
             "{begin} frames without load, then {} of constant load: begin without, put a weight down within {SETTLES} s, \
@@ -161,6 +172,11 @@ pub fn fit(sums: &[f64], seconds: f64) -> Result<Fitted, String> {
         return Err(
             "the readings change before the load: begin when nothing has touched for five time constants".to_owned()
         );
+    }
+    if steady_from > most {
+        return Err(format!(
+            "the readings rise for more than {SETTLES} s before they creep: put the weight down faster"
+        ));
     }
     let (held_s, waited) = (seconds * held.len() as f64, settled - begin);
     let shortest = FRAMES[0].max(waited as f64);
@@ -192,15 +208,15 @@ pub fn fit(sums: &[f64], seconds: f64) -> Result<Fitted, String> {
     }
     let shape = |n: usize| creep.strength * (1.0 - (-(n as f64) / frames).exp());
     let corrected: Vec<f64> = held.iter().zip(waited..).map(|(sum, n)| sum / (1.0 + shape(n))).collect();
-    let left = spread(&corrected);
-    if 2.0 * left > spread(&held) {
+    let residual_share = spread(&corrected);
+    if 2.0 * residual_share > spread(&held) {
         return Err(format!(
             "one time constant leaves {:.1} % of a change by {:.1} %: this sensor's creep is of another kind, or the load moved",
-            100.0 * left,
+            100.0 * residual_share,
             100.0 * spread(&held)
         ));
     }
-    Ok(Fitted { creep, held_s, rise, left })
+    Ok(Fitted { creep, held_s, rise, residual_share })
 }
 
 /// Squared error, time constant and strength: least squares of the strength for a time constant in frames. The first of
@@ -290,7 +306,7 @@ mod tests {
             assert!((found.creep.strength - 0.4).abs() < 0.02, "{ramp} {level} {noise}: {found:?}");
             assert!((found.creep.seconds - 10.0).abs() < 0.5, "{ramp} {level} {noise}: {found:?}");
             assert!((found.creep.frames_per_second - 20.0).abs() < 1e-9, "{found:?}");
-            assert!(found.left < 0.01, "{found:?}");
+            assert!(found.residual_share < 0.01, "{found:?}");
         }
     }
 
@@ -302,10 +318,13 @@ mod tests {
         let moved: Vec<f64> = creep.iter().enumerate().map(|(n, sum)| if n > 700 { 0.7 * sum } else { *sum }).collect();
         for (sums, said) in [
             (creep[200..].to_vec(), "change before the load"),
+            (readings(&CREEP, &step(1500, 50)), "put the weight down faster"),
+            (readings(&CREEP, &step(1500, 120)), "put the weight down faster"),
             (creep[..220].to_vec(), "of constant load"),
             (creep[..270].to_vec(), "still rise after"),
             (step(1500, 1), "no creep to correct"),
             (step(1500, 1).iter().enumerate().map(|(n, sum)| sum * (1.0 - 1e-4 * n as f64)).collect(), "fall by"),
+            (with(1.2, 10.0), "can be corrected"),
             (with(3.0, 10.0), "can be corrected"),
             (with(0.4, 0.1), "can be corrected"),
             (moved, "the load moved"),
@@ -318,7 +337,6 @@ mod tests {
 
     #[test]
     fn frames_come_evenly_or_are_refused() {
-        assert!((interval(&[0.0, 0.1, 0.21, 0.3]).unwrap() - 0.1).abs() < 1e-9);
         for (times, said) in [
             (&[0.0, 0.1, 0.2, 10.3, 10.4][..], "after frame 3"),
             (&[0.0, 0.1, 0.05, 0.2, 0.3], "after frame 2"),
@@ -328,6 +346,35 @@ mod tests {
         ] {
             let refusal = interval(times).unwrap_err();
             assert!(refusal.contains(said), "{refusal}");
+        }
+        let late = |rate: f64, from: usize, frames: f64| -> Vec<f64> {
+            (0..2000).map(|n| (n as f64 + if n < from { 0.0 } else { frames }) / rate).collect()
+        };
+        for (rate, frames) in [(10.0, 2.0), (1000.0, 90.0)] {
+            interval(&late(rate, 1999, frames)).unwrap();
+            for from in [500, 1000, 1999] {
+                let refusal = interval(&late(rate, from, 4.0 * frames)).unwrap_err();
+                assert!(refusal.contains(&format!("after frame {from},")), "{refusal}");
+            }
+        }
+        // Half of the time at twice the rate.
+        let faster: Vec<f64> =
+            (0..2000).map(|n| 0.01 * if n < 1000 { f64::from(n) } else { 500.0 + 0.5 * f64::from(n) }).collect();
+        assert!(interval(&faster).unwrap_err().contains("at one rate"));
+    }
+
+    /// Clocks of whole milliseconds, frames that come in batches, and one that was left out.
+    #[test]
+    fn times_tell_the_rate_however_coarse_they_are() {
+        let milliseconds = |rate: f64| (0..3000).map(|n| (1e3 * f64::from(n) / rate).round() / 1e3).collect();
+        let batches = (0..3000).map(|n| f64::from(n / 8 * 8) / 250.0).collect();
+        let left_out = (0..3000).filter(|n| *n != 700).map(|n| f64::from(n) / 20.0).collect();
+        for (rate, times) in
+            [(300.0, milliseconds(300.0)), (900.0, milliseconds(900.0)), (250.0, batches), (20.0, left_out)]
+        {
+            let times: Vec<f64> = times;
+            let found = 1.0 / interval(&times).unwrap();
+            assert!((found / rate - 1.0).abs() < 0.003, "{found} {rate}");
         }
     }
 

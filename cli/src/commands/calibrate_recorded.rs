@@ -210,15 +210,15 @@ fn text(report: &Report<'_>) -> String {
             }
         }
     }
-    if let Some(creep::Fitted { creep, held_s, rise, left }) = &report.creep {
+    if let Some(creep::Fitted { creep, held_s, rise, residual_share }) = &report.creep {
         say!(text, "from constant load: the readings rise by {:.1} % in {held_s:.1} s", 100.0 * rise);
         say!(
             text,
-            "  creep       strength {:.3}, time constant {:.2} s at {:.1} frames a second; corrected, readings vary by {:.1} %",
+            "  creep       strength {:.3}, time constant {:.2} s at {:.1} frames a second; corrected, readings vary by {:.1} % of their mean",
             creep.strength,
             creep.seconds,
             creep.frames_per_second,
-            100.0 * left
+            100.0 * residual_share
         );
     }
     say!(text, "next: {}", report.next);

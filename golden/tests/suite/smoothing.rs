@@ -145,3 +145,20 @@ fn frames_are_averaged_alike_however_they_are_solved() {
     // A frame alone has no average.
     assert_eq!(solver.solve(&frames[5]).unwrap(), without.solve(&frames[5]).unwrap());
 }
+
+/// A sensor's own frames creep, so that the solver finds a held contact's force constant.
+#[test]
+fn frames_that_are_delivered_in_order_creep() {
+    let creeping = design("crosstalk = 0.01\ncreep = { strength = 0.4, seconds = 0.2, frames_per_second = 100.0 }\n");
+    let contact = Kind::Sliding.frames(&creeping.sensor, 0.5, 1..2).unwrap().remove(0).stress;
+    let normal_forces = |deliver: &dyn Fn(&mut Vec<Vec<f64>>)| -> Vec<f64> {
+        let mut frames = vec![contact.clone(); 60];
+        deliver(&mut frames);
+        let found = Solver::new(&creeping).unwrap().solve_in_order(&frames).unwrap();
+        found.iter().map(|found| found.resultant[2]).collect()
+    };
+    let in_order = normal_forces(&|frames| creeping.deliver_in_order(frames));
+    assert!(in_order.iter().all(|force| (force / in_order[0] - 1.0).abs() < 1e-9), "{in_order:?}");
+    let one_by_one = normal_forces(&|frames| frames.iter_mut().for_each(|frame| creeping.deliver(frame)));
+    assert!((one_by_one[0] / in_order[0] - 1.0).abs() < 1e-9 && one_by_one[59] / in_order[0] < 0.8, "{one_by_one:?}");
+}
