@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use golden::calibrate::recorded::{Recorded, fit_forces, fit_uniform, page, read_forces, read_pressures};
+use golden::calibrate::recorded::{
+    Measured, Recorded, RecordedError, fit_forces, fit_uniform, page, read_forces, read_pressures,
+};
 use golden::check::check;
 use golden::choose::rebase_scenes;
 use golden::creep::{self, Creep};
@@ -17,6 +19,13 @@ use serde::Serialize;
 use super::recording::{LayoutArguments, Recording, warn};
 use crate::arguments::name_of;
 use crate::message::{self, json_or, say};
+
+/// Rounds of fits at most: what counts mean tells creep, and readings without creep tell what counts mean.
+const ROUNDS: usize = 10;
+/// They end when readings without creep change by less than this share of the largest.
+const SETTLED: f64 = 1e-3;
+
+type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 /// Recordings with measured forces or pressures.
 #[derive(clap::Args, Debug)]
@@ -96,42 +105,33 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
         design.name = name;
     }
     let progress = Progress::of("fitting");
-    // Gains are those of readings without creep.
-    let mut creep = design.input.creep.take();
-    let found_creep = constant_load.as_ref().map(|file| creep_of(file, layout, &design)).transpose()?;
-    creep = found_creep.map(|found| found.creep).or(creep);
-    let mut results: [Option<Recorded>; 2] = [None, None];
-    let mut findings = Vec::new();
-    for (place, (file, measured)) in [(uniform, pressures), (frames, forces)].into_iter().enumerate() {
-        let (Some(file), Some(measured)) = (file, measured) else { continue };
-        let mut recording = Recording { file, layout: layout.layout() }.read_all(&design)?;
-        let (frames, times) = (&mut recording.frames, recording.times.as_deref());
-        if let Some(creep) = &creep {
-            // The recording may have another rate than the frames to come.
-            let interval = times.map(creep::interval).transpose();
-            let interval = interval.map_err(|problem| format!("{}: {problem}", file.display()))?;
-            let rate = interval.map_or(creep.frames_per_second, |interval| 1.0 / interval);
-            Creep { frames_per_second: rate, ..*creep }.remove_from_recording(&design, frames);
+    let mut given = [
+        Pressed::read(uniform.as_ref().zip(pressures.as_ref()), layout, &design, read_pressures)?,
+        Pressed::read(frames.as_ref().zip(forces.as_ref()), layout, &design, read_forces)?,
+    ];
+    let weight = constant_load.as_ref().map(|file| Weight::read(file, layout, &design)).transpose()?;
+    let find_creep = |design: &Design| weight.as_ref().map(|weight| weight.creep(design)).transpose();
+    let own = design.input.creep.take();
+    let mut found_creep = find_creep(&design)?;
+    let mut fitted = (design.clone(), [None, None]);
+    for _ in 0..ROUNDS {
+        let creep = found_creep.map(|found| found.creep).or(own);
+        let mut settled = true;
+        for pressed in given.iter_mut().flatten() {
+            settled &= !pressed.free(creep, &fitted.0)?;
         }
-        let table = if place == 0 { read_pressures(measured) } else { read_forces(measured) }?;
-        let table = match times {
-            Some(times) if table.times.is_some() => table.at(times),
-            _ => Ok(table.without_skipped(&recording)),
-        };
-        let (frames, table) =
-            (&recording.frames, table.map_err(|problem| format!("{}: {problem}", measured.display()))?);
-        let found =
-            if place == 0 { fit_uniform(&design, frames, &table) } else { fit_forces(&design, frames, &table) }?;
-        // As the design reads them now: sign, unit and tare are what was fitted. A bladder loads every taxel.
-        if place == 1 {
-            findings = check(&found.design, frames, Matrices::of(&found.design).ok().as_ref());
+        if settled {
+            break;
         }
-        design = found.design.clone();
-        results[place] = Some(found);
+        fitted = fit(&design, &given)?;
+        found_creep = find_creep(&fitted.0)?;
     }
-    design.input.creep = creep;
+    let (mut design, results) = fitted;
+    // As the design reads them now: sign, unit and tare are what was fitted. A bladder loads every taxel.
+    let findings = given[1].as_ref().map(|pressed| check(&design, &pressed.freed, Matrices::of(&design).ok().as_ref()));
+    design.input.creep = found_creep.map(|found| found.creep).or(own);
     drop(progress);
-    warn(&findings);
+    warn(&findings.unwrap_or_default());
     if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
         *scenes = rebase_scenes(scenes, folder(path), folder(out));
     }
@@ -172,20 +172,89 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
     Ok(json_or(&report, json, text)?.into())
 }
 
-/// Creep from a recording of constant load.
-fn creep_of(
-    file: &Path,
-    layout: &LayoutArguments,
-    design: &Design,
-) -> std::result::Result<creep::Fitted, Box<dyn std::error::Error>> {
-    let Frames { frames, times, .. } = Recording { file, layout: layout.layout() }.read_all(design)?;
-    let of_file = |problem: String| format!("{}: {problem}", file.display());
-    let times = times.ok_or_else(|| {
-        of_file("no column of times: name one before the values in the header, `time (s)` or `t (ms)`".to_owned())
-    })?;
-    let seconds = creep::interval(&times).map_err(of_file)?;
-    let sums: Vec<f64> = frames.iter().map(|frame| design.stress_of(frame).iter().sum()).collect();
-    Ok(creep::fit(&sums, seconds).map_err(of_file)?)
+/// Frames of contacts or of uniform pressure, and what was measured with them.
+struct Pressed<'a> {
+    file: &'a Path,
+    frames: Vec<Vec<f64>>,
+    times: Option<Vec<f64>>,
+    measured: Measured,
+    /// The frames without creep.
+    freed: Vec<Vec<f64>>,
+}
+
+impl<'a> Pressed<'a> {
+    fn read(
+        files: Option<(&'a PathBuf, &PathBuf)>,
+        layout: &LayoutArguments,
+        design: &Design,
+        table: impl Fn(&Path) -> std::result::Result<Measured, RecordedError>,
+    ) -> Result<Option<Self>> {
+        let Some((file, measured)) = files else { return Ok(None) };
+        let recording = Recording { file, layout: layout.layout() }.read_all(design)?;
+        let table = table(measured)?;
+        let table = match &recording.times {
+            Some(times) if table.times.is_some() => table.at(times),
+            _ => Ok(table.without_skipped(&recording)),
+        };
+        let measured = table.map_err(|problem| format!("{}: {problem}", measured.display()))?;
+        let Frames { frames, times, .. } = recording;
+        Ok(Some(Self { file, frames, times, measured, freed: Vec::new() }))
+    }
+
+    /// Takes creep off the frames as a design reads them; whether that changes what it was before.
+    fn free(&mut self, creep: Option<Creep>, design: &Design) -> Result<bool> {
+        let mut freed = self.frames.clone();
+        if let Some(creep) = creep {
+            // The recording may have another rate than the frames to come.
+            let interval = self.times.as_deref().map(creep::interval).transpose();
+            let interval = interval.map_err(|problem| format!("{}: {problem}", self.file.display()))?;
+            let rate = interval.map_or(creep.frames_per_second, |interval| 1.0 / interval);
+            Creep { frames_per_second: rate, ..creep }.remove_from_recording(design, &mut freed);
+        }
+        let largest = freed.iter().flatten().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        let mut pairs = freed.iter().flatten().zip(self.freed.iter().flatten());
+        let changed = self.freed.is_empty() || pairs.any(|(now, before)| (now - before).abs() > SETTLED * largest);
+        self.freed = freed;
+        Ok(changed)
+    }
+}
+
+/// The design with what is found from uniform pressure and from contacts.
+fn fit(design: &Design, given: &[Option<Pressed<'_>>; 2]) -> Result<(Design, [Option<Recorded>; 2])> {
+    let mut design = design.clone();
+    let mut results = [None, None];
+    for (place, fit) in [fit_uniform, fit_forces].into_iter().enumerate() {
+        let Some(Pressed { freed, measured, .. }) = &given[place] else { continue };
+        let found = fit(&design, freed, measured)?;
+        design = found.design.clone();
+        results[place] = Some(found);
+    }
+    Ok((design, results))
+}
+
+/// A recording of a weight that stays.
+struct Weight<'a> {
+    file: &'a Path,
+    frames: Vec<Vec<f64>>,
+    /// From frame to frame.
+    seconds: f64,
+}
+
+impl<'a> Weight<'a> {
+    fn read(file: &'a Path, layout: &LayoutArguments, design: &Design) -> Result<Self> {
+        let Frames { frames, times, .. } = Recording { file, layout: layout.layout() }.read_all(design)?;
+        let times = times.ok_or_else(|| {
+            "no column of times: name one before the values in the header, `time (s)` or `t (ms)`".to_owned()
+        });
+        let seconds = times.and_then(|times| creep::interval(&times));
+        Ok(Self { file, frames, seconds: seconds.map_err(|problem| format!("{}: {problem}", file.display()))? })
+    }
+
+    /// The creep that a design finds in it.
+    fn creep(&self, design: &Design) -> Result<creep::Fitted> {
+        let sums: Vec<f64> = self.frames.iter().map(|frame| design.stress_of(frame).iter().sum()).collect();
+        Ok(creep::fit(&sums, self.seconds).map_err(|problem| format!("{}: {problem}", self.file.display()))?)
+    }
 }
 
 fn text(report: &Report<'_>) -> String {
