@@ -80,7 +80,7 @@ const DISTURBANCES: [Disturbance; 10] = [
     Disturbance { name: "creep-20-drift", times: ONE, spread: 0.2, drifts: true, ..STEADY },
 ];
 
-/// How readings are corrected before they are solved.
+/// How readings are corrected before they are solved; the last takes a tare off what the last but one leaves.
 const CORRECTIONS: [&str; 5] = ["none", "tare", "baseline", "constant", "constant-tare"];
 
 impl Disturbance {
@@ -284,6 +284,7 @@ pub fn csv(designs: &[(String, Design)]) -> Result<String, NoiseError> {
          # drift: offsets drift for {DRIFTED} minutes, each by its own {DRIFT_PERCENT} % of the largest reading a minute (deviation).\n\
          # baseline: it follows the readings, loaded or not, with a time constant of {BASELINE} s.\n\
          # constant: creep is removed by one strength and one time for all taxels, found from {STEP_OF_LOAD} s of uniform load.\n\
+         # constant-tare: the same, with the tare of readings without creep.\n\
          # command: cargo xtask drift DESIGNS --out results/drift.csv\n\
          # designs: {}\n\
          design,readings,correction,seconds,f_z,f_z_p95,f_z_worst,shear,shear_p95,shear_worst,friction,friction_p95,friction_worst\n",
