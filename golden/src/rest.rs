@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
-use crate::check::together;
+use crate::check::unit::Scale;
+use crate::check::{holds, together};
 use crate::dead_taxels::MOST_DEAD;
 use crate::design::{Calibration, Design};
-use crate::numbers::sorted;
+use crate::numbers::{magnitude, middle as median};
 
 /// So few frames tell no deviation.
 const FRAMES: usize = 10;
@@ -47,6 +48,15 @@ pub enum RestError {
         "{0} taxels are dead or stuck, and {1} of this sensor's can be replaced: mend the sensor, or leave out the part of it"
     )]
     Dead(usize, usize),
+    /// No frame of contacts has load.
+    #[error("no frame has load above the noise; record contacts")]
+    NoLoad,
+    /// Frames of contacts with less load than those without.
+    #[error(
+        "{0} of {1} frames read less load than the unloaded ones: did something press while those were recorded? Record them \
+         anew; if nothing did, change {2}"
+    )]
+    LessLoad(usize, usize, &'static str),
 }
 
 /// What one taxel reads at rest, in the units of the file.
@@ -186,20 +196,30 @@ impl AtRest {
         said
     }
 
-    /// The noise over the largest reading of a typical frame of contacts: for `sensor.noise`. Nothing where no frame has load.
-    pub fn noise_of(&self, design: &Design, loaded: &[Vec<f64>]) -> Option<f64> {
-        let above = |frame: &Vec<f64>, each: &TaxelAtRest| {
-            let of = |value: f64| design.input.to_pa(each.taxel, value);
-            (of(frame[each.taxel]) - of(each.offset)).abs()
-        };
-        let peak = |frame: &Vec<f64>| {
+    /// The noise over the largest reading of a typical frame of contacts: for `sensor.noise`.
+    ///
+    /// # Errors
+    ///
+    /// [`RestError::NoLoad`], and [`RestError::LessLoad`] where nearly all frames with load pull.
+    pub fn noise_of(&self, design: &Design, loaded: &[Vec<f64>]) -> Result<f64, RestError> {
+        let above = |frame: &Vec<f64>| -> Vec<f64> {
             let live = self.taxels.iter().filter(|each| self.works(each.taxel));
-            live.map(|each| above(frame, each)).fold(0.0, f64::max)
+            let of = |taxel: usize, value: f64| design.input.to_pa(taxel, value);
+            live.map(|each| of(each.taxel, frame[each.taxel]) - of(each.taxel, each.offset)).collect()
         };
-        let peaks: Vec<f64> = loaded.iter().map(peak).collect();
-        let largest = peaks.iter().copied().fold(0.0, f64::max);
-        let typical = median(peaks.into_iter().filter(|&peak| peak >= LOADED * largest));
-        (typical > QUIET * self.noise_pa).then(|| self.noise_pa / typical)
+        let above: Vec<Vec<f64>> = loaded.iter().map(above).collect();
+        let largest = magnitude(above.iter().flatten());
+        let of_contacts = || above.iter().filter(|frame| magnitude(*frame) >= LOADED * largest);
+        let typical = median(of_contacts().map(magnitude));
+        if typical <= QUIET * self.noise_pa {
+            return Err(RestError::NoLoad);
+        }
+        let [pull, all] =
+            [of_contacts().filter(|frame| frame.iter().sum::<f64>() > 0.0).count(), of_contacts().count()];
+        if holds(pull, all) {
+            return Err(RestError::LessLoad(pull, all, Scale::of(design).sign));
+        }
+        Ok(self.noise_pa / typical)
     }
 
     /// Gains and offsets with which these readings are none: the design's gains, 0 for dead and stuck taxels.
@@ -288,12 +308,4 @@ fn constant(
     }
     dead.sort_unstable();
     (dead, stuck, silent)
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let values = sorted(values);
-    match values.len() {
-        0 => 0.0,
-        count => f64::midpoint(values[(count - 1) / 2], values[count / 2]),
-    }
 }

@@ -47,6 +47,7 @@ pub fn run(
 ) -> message::Result {
     let named = |error| format!("{}: {error}", design.name);
     let rest = AtRest::of(design, frames).map_err(named)?;
+    let noise_of_contacts = loaded.map(|loaded| share(design, &rest, loaded)).transpose()?;
     if let Some(out) = out {
         let files = Design::files_named_in(path)?;
         let inputs: Vec<&Path> = files.iter().map(AsRef::as_ref).chain([path, recording.file]).collect();
@@ -57,7 +58,6 @@ pub fn run(
     for warning in &rest.warnings {
         eprintln!("warning: {warning}");
     }
-    let noise_of_contacts = loaded.map(|loaded| share(design, &rest, loaded)).transpose()?;
     let beyond = beyond(design, frames);
     let report = Report {
         design: &design.name,
@@ -122,7 +122,7 @@ pub fn run(
 
 /// The noise as a share of what typical contacts read.
 fn share(design: &Design, rest: &AtRest, loaded: &[Vec<f64>]) -> Result<f64, String> {
-    let share = rest.noise_of(design, loaded).ok_or("--loaded: no frame has load above the noise; record contacts")?;
+    let share = rest.noise_of(design, loaded).map_err(|error| format!("--loaded: {error}"))?;
     if share > MAX_NOISE {
         return Err(format!(
             "--loaded: the noise is {:.0} % of a typical contact's largest reading, above the {} % of sensor.noise; press harder",

@@ -100,6 +100,19 @@ fn the_calibration_takes_the_offsets_off() {
     let said = sptfra(&["check", &design, "--frames", &rest, "--unloaded", "--loaded", &rest]);
     let wrong = String::from_utf8(said.stderr).unwrap();
     assert!(!said.status.success() && wrong.contains("--loaded"), "{wrong}");
+    // Unloaded frames that were recorded under the largest load of the others are no tare.
+    let bump = |frame: usize, taxel: usize| offset(taxel) + if taxel == 40 { 100.0 * (frame % 10) as f64 } else { 0.0 };
+    let tare = path("tare.csv");
+    for (name, recording) in
+        [(&tare, frames(30, |frame, taxel| bump(9, taxel) + 2.0 * noise(frame, taxel))), (&loaded, frames(30, bump))]
+    {
+        write_frames(name.as_ref(), &recording).unwrap();
+    }
+    let written = path("tared.csv");
+    let said = sptfra(&["check", &design, "--frames", &tare, "--unloaded", "--loaded", &loaded, "--out", &written]);
+    let wrong = String::from_utf8(said.stderr).unwrap();
+    assert!(wrong.contains("--loaded: 27 of 27 frames read less load than the unloaded ones"), "{wrong}");
+    assert!(!said.status.success() && !std::path::Path::new(&written).exists());
     // The design reads it, and is tared.
     fs::write(&design, text("calibration = \"mat.calibration.csv\"\n")).unwrap();
     let tared = Design::load(design.as_ref()).unwrap();

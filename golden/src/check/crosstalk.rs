@@ -13,9 +13,7 @@ use crate::sensor::Sensor;
 const FRAMES: usize = 3;
 /// Readings of this share of the largest are those of the contact.
 const TOUCHED: f64 = 0.25;
-/// A contact is this far away from where its stress has decayed, in pitches beside the depth.
-const DECAYED: f64 = 1.0;
-/// Fewer taxels in its rows or columns beyond that show nothing.
+/// Fewer taxels in its rows or columns, a depth away from it, show nothing.
 const ARM: usize = 3;
 /// Rounds of share and sums in turns.
 const ROUNDS: usize = 6;
@@ -56,7 +54,7 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>]) -> Option<Found> {
     let loaded: Vec<&Vec<f64>> = stress.iter().filter(|frame| peak > 0.0 && largest(frame) >= LOADED * peak).collect();
     let found: Vec<Estimate> = loaded.iter().filter_map(|stress| estimate(design, stress)).collect();
     let clear = found.iter().filter(|one| (one.share - known).abs() >= CLEAR * one.error).count();
-    if found.len() < FRAMES.max(loaded.len().div_ceil(2)) || (clear as f64) < MOST * found.len() as f64 {
+    if found.len() < FRAMES || (clear as f64) < MOST * found.len() as f64 {
         return None;
     }
     let share = mean(&found);
@@ -108,9 +106,8 @@ fn estimate(design: &Design, stress: &[f64]) -> Option<Estimate> {
         [x - centre[0], y - centre[1]]
     };
     let distance = |taxel: usize| from(taxel)[0].hypot(from(taxel)[1]);
-    let pitch = 1e-3 * sensor.pitch_mm[0].min(sensor.pitch_mm[1]);
     let radius = touched.iter().map(|&taxel| distance(taxel)).fold(0.0, f64::max);
-    let near = radius + 1e-3 * sensor.depth_mm + DECAYED * pitch;
+    let near = radius + 1e-3 * sensor.depth_mm;
     let is_live = |taxel: &usize| !design.input.dead.contains(taxel);
     let far: Vec<usize> = (0..stress.len()).filter(|&taxel| distance(taxel) >= near).filter(is_live).collect();
     let (columns, place) = (sensor.columns, |taxel: usize| [taxel % sensor.columns, taxel / sensor.columns]);

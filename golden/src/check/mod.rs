@@ -14,7 +14,7 @@ mod print;
 mod quiet;
 mod rest;
 mod scaled;
-mod unit;
+pub(crate) mod unit;
 
 use std::fmt;
 
@@ -104,6 +104,9 @@ const FAINT: f64 = 2e-3;
 ///
 /// `matrices` are those of the design; without them the order of the taxels is not looked at.
 pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) -> Vec<Finding> {
+    if let Some(message) = order::swapped(&design.sensor, frames) {
+        return vec![Finding { kind: Kind::Order, message }];
+    }
     if let Some(crosstalk::Found { share, message }) = crosstalk::check(design, frames) {
         // What else is wrong shows without it.
         let mut corrected = design.clone();
@@ -162,7 +165,7 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
         }
         return findings;
     }
-    if let Some(message) = print::check(&stress, &is_loaded) {
+    if let Some(message) = print::check(design, &stress) {
         found(Kind::Tare, message);
         return findings;
     }
@@ -287,7 +290,7 @@ fn farthest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |far: f64, &value| if value.abs() > far.abs() { value } else { far })
 }
 
-fn holds(frames: usize, of: usize) -> bool {
+pub(crate) fn holds(frames: usize, of: usize) -> bool {
     frames > 0 && frames as f64 >= MOST * of as f64
 }
 

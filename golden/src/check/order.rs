@@ -30,6 +30,8 @@ const BETTER: f64 = 0.6;
 const FEW: f64 = 0.015;
 /// next to none.
 const FAR_BETTER: f64 = 0.3;
+/// Taxels a row apart differ by this share of what taxels half a row apart do, squared, and frames do not.
+const BELOW: f64 = 0.6;
 /// No order does where pulls make up this share without one: the forces alternate like a checkerboard.
 const ALTERNATING: f64 = 0.2;
 
@@ -126,6 +128,29 @@ pub(super) fn axes(sensor: &Sensor, frames: &[Vec<f64>]) -> Option<String> {
         "the array is as rough along its first axis as along one of the others, and the {axis} one is unlike both: are its \
          frames along the {axis} axis? Save numpy.moveaxis(frames, {remedy}, 0)"
     ))
+}
+
+/// Whether a file of as many frames as taxels has a line for each taxel: along the frames' axis, not along the taxels', those
+/// that are a row of the grid apart are alike.
+pub(super) fn swapped(sensor: &Sensor, frames: &[Vec<f64>]) -> Option<String> {
+    let (taxels, columns) = (sensor.taxels(), sensor.columns);
+    if frames.len() != taxels || columns < 4 || sensor.rows < 3 {
+        return None;
+    }
+    // Mean square of the difference of values so far apart.
+    let apart = |lag: usize, value: &dyn Fn(usize, usize) -> f64| -> f64 {
+        let step = |at: usize, other: usize| (value(at + lag, other) - value(at, other)).powi(2);
+        let squares: f64 = (0..taxels - lag).map(|at| (0..taxels).map(|other| step(at, other)).sum::<f64>()).sum();
+        squares / (taxels - lag) as f64
+    };
+    let is_grid = |value: &dyn Fn(usize, usize) -> f64| apart(columns, value) < BELOW * apart(columns / 2, value);
+    let is_swapped = is_grid(&|frame, taxel| frames[frame][taxel]) && !is_grid(&|taxel, frame| frames[frame][taxel]);
+    is_swapped.then(|| {
+        format!(
+            "lines {columns} apart are alike, as taxels below each other, and columns so far apart are not: does each of the \
+             {taxels} lines hold a taxel, and each column a frame? Save numpy.transpose(frames)"
+        )
+    })
 }
 
 /// Correlation of neighbours, the mean over frames, where they stand in an order.

@@ -1,27 +1,56 @@
-//! A frame that is the negative print of others, as a tare under load leaves it.
+//! What a tare under load leaves: the negative print of the contact that lay on the sensor.
+
+use super::unit::Scale;
+use super::{LOADED, PULLS_TOGETHER, largest, together};
+use crate::design::Design;
 
 /// From so many taxels on no two contacts are opposite by chance.
 const TAXELS: usize = 9;
 /// Cosine of two frames of which one is the print of the other.
 const OPPOSITE: f64 = -0.9;
+/// A frame without load has this share of the largest pull,
+const WHOLE: f64 = 0.9;
+/// and what lessens it leaves at most this share.
+const LESS: f64 = 0.5;
 
-/// A message where the loaded frame that pulls most is the negative of another, in pascals.
-pub(super) fn check(stress: &[Vec<f64>], is_loaded: &[bool]) -> Option<String> {
-    let loaded = || stress.iter().enumerate().filter(|(frame, _)| is_loaded[*frame]);
+/// A message where the loaded frame that pulls most is the negative of another, in pascals, or where the print is what a
+/// recording begins or ends with.
+pub(super) fn check(design: &Design, stress: &[Vec<f64>]) -> Option<String> {
     let pull = |frame: &[f64]| frame.iter().sum::<f64>();
+    let peak = stress.iter().map(|frame| largest(frame)).fold(0.0, f64::max);
+    let loaded = || stress.iter().enumerate().filter(|(_, frame)| largest(frame) >= LOADED * peak);
     let (print, pulled) = loaded().max_by(|(_, a), (_, b)| pull(a).total_cmp(&pull(b)))?;
-    let (pressed, _) = loaded().find(|(_, frame)| is_print(pulled, frame))?;
-    (pull(pulled) > 0.0).then(|| {
-        format!(
+    let most = pull(pulled);
+    if most <= 0.0 || pulled.len() < TAXELS {
+        return None;
+    }
+    if let Some((pressed, _)) = loaded().find(|(_, frame)| cosine(pulled, frame) < OPPOSITE) {
+        return Some(format!(
             "frame {} is the negative print of frame {}: was the sensor tared under a load, or does a baseline follow the \
              readings? Tare without load, and switch off what follows the baseline",
             print + 1,
             pressed + 1
+        ));
+    }
+    let (nearest, least) = stress.iter().enumerate().min_by(|(_, a), (_, b)| pull(a).total_cmp(&pull(b)))?;
+    let is_print = |frame: &Vec<f64>| pull(frame) >= WHOLE * most && cosine(pulled, frame) > -OPPOSITE;
+    let prints = stress.iter().filter(|frame| is_print(frame)).count();
+    let near_zero = stress.iter().filter(|frame| pull(frame).abs() <= (1.0 - WHOLE) * most).count();
+    let ends = usize::from(is_print(&stress[0])) + usize::from(is_print(&stress[stress.len() - 1]));
+    // An even offset is no contact.
+    let is_contact = together(&design.sensor, pulled) >= PULLS_TOGETHER && pull(least) <= LESS * most;
+    (is_contact && (ends == 2 || ends == 1 && prints > near_zero)).then(|| {
+        format!(
+            "the unloaded frames are more loaded than others: {prints} frames{} have the pull of one contact, and frame {} has \
+             the least. Was the sensor tared under a load? Tare it without. If a contact did lie on it then, compression must be negative: change {}",
+            if ends == 2 { ", the first and the last," } else { "" },
+            nearest + 1,
+            Scale::of(design).sign
         )
     })
 }
 
-fn is_print(one: &[f64], other: &[f64]) -> bool {
+fn cosine(one: &[f64], other: &[f64]) -> f64 {
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    one.len() >= TAXELS && product(one, other) < OPPOSITE * (product(one, one) * product(other, other)).sqrt()
+    product(one, other) / (product(one, one) * product(other, other)).sqrt()
 }

@@ -396,20 +396,28 @@ fn rest_is_told_and_no_contact_is_made_of_it() {
 fn frames_that_are_each_scaled_by_their_own_peak() {
     let design = design("sensor1-fast");
     let frames = frames(&design);
-    for largest in [1.0, 255.0] {
-        let scaled: Vec<Vec<f64>> = frames
-            .iter()
-            .map(|frame| {
-                let peak = frame.iter().fold(0.0_f64, |peak, pa| peak.max(pa.abs()));
-                frame.iter().map(|pa| largest * pa / peak).collect()
-            })
-            .collect();
-        found(
-            &design,
-            &scaled,
-            &[Kind::Scaled],
-            &["all 36 frames have the same largest reading", "scale all frames alike"],
-        );
+    let scaled = |of: &dyn Fn(&[f64]) -> [f64; 2]| -> Vec<Vec<f64>> {
+        let each = |frame: &Vec<f64>| {
+            let [zero, one] = of(frame);
+            frame.iter().map(|pa| (pa - zero) / (one - zero)).collect()
+        };
+        frames.iter().map(each).collect()
+    };
+    let peak = |frame: &[f64]| frame.iter().fold(0.0_f64, |peak, pa| peak.max(pa.abs()));
+    let ends =
+        |frame: &[f64]| [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| frame.iter().copied().fold(0.0, pick));
+    let clipped = |frame: &[f64]| [ends(frame)[0], ends(frame)[0].mul_add(0.2, 0.0)];
+    let sum = |frame: &[f64]| frame.iter().sum::<f64>();
+    for (frames, same) in [
+        (scaled(&|frame| [0.0, peak(frame)]), "largest reading, 1"),
+        (scaled(&|frame| [0.0, peak(frame) / 255.0]), "largest reading, 255"),
+        (scaled(&ends), "largest reading, 1"),
+        (changed(&scaled(&clipped), |share| share.min(1.0)), "largest reading, 1"),
+        (changed(&scaled(&|frame| [0.0, sum(frame)]), |share| (1e6 * share).round() / 1e6), "sum, "),
+        (scaled(&|frame| [0.0, -0.01 * sum(frame)]), "sum, "),
+    ] {
+        let words = [&format!("all 36 frames have the same {same}"), "Its force is lost", "scale all frames alike"];
+        found(&design, &frames, &[Kind::Scaled], &words);
     }
 }
 
@@ -447,6 +455,35 @@ fn an_array_with_its_frames_last() {
     assert!(found >= 9, "found in {found} of 18 kinds");
 }
 
+/// A file of as many frames as taxels says which are its lines, if the grid shows.
+#[test]
+fn a_file_with_a_line_for_each_taxel() {
+    for design in [pad(10, 10, 3.0), pad(7, 5, 3.0), pad(5, 8, 3.0)] {
+        let (taxels, mut found) = (design.sensor.taxels(), 0);
+        let swapped = |frames: &[Vec<f64>]| {
+            let findings = check(&design, frames, None);
+            findings.into_iter().find(|finding| finding.to_string().contains("numpy.transpose"))
+        };
+        for kind in golden::scene::Kind::ALL {
+            let contacts = kind.frames(&design.sensor, 0.8, 500..500 + taxels.div_ceil(20) as u64).unwrap();
+            // Each is pressed and released within 20 frames, with noise.
+            let frame = |at: usize| -> Vec<f64> {
+                let (contact, share) =
+                    (&contacts[at / 20].stress, (std::f64::consts::PI * (at % 20) as f64 / 20.0).sin());
+                let noise = |taxel: usize| f64::from(((at * 7919 + taxel * 104_729) % 1601) as u32) / 8.0;
+                contact.iter().enumerate().map(|(taxel, pa)| share * pa + noise(taxel)).collect()
+            };
+            let frames: Vec<Vec<f64>> = (0..taxels).map(frame).collect();
+            let turned: Vec<Vec<f64>> =
+                (0..taxels).map(|taxel| frames.iter().map(|frame| frame[taxel]).collect()).collect();
+            assert_eq!(swapped(&frames), None, "{}, {}", design.sensor, kind.title());
+            found += usize::from(swapped(&turned).is_some());
+        }
+        println!("{}: found in {found} of 18", design.sensor);
+        assert!(found >= 15, "{}: found in {found} of 18 kinds", design.sensor);
+    }
+}
+
 #[test]
 fn a_tare_under_load_is_named() {
     let design = design("sensor1-fast");
@@ -463,4 +500,16 @@ fn a_tare_under_load_is_named() {
     let doubled: Vec<f64> = aside[0].iter().map(|pa| 2.0 * pa).collect();
     let pressed = [again, less(&[doubled], &aside[0])].concat();
     found(&design, &pressed, &[Kind::Tare], &["negative print of frame", "tared under a load", "Tare without load"]);
+    // Tared at the largest load of one place: the sign is right, and the least loaded frames pull.
+    let at = |load: f64| frames[0].iter().map(|pa| load * pa).collect::<Vec<f64>>();
+    let touch: Vec<Vec<f64>> = [0.0, 0.0, 0.3, 0.7, 1.0, 0.6, 0.2, 0.0].into_iter().map(at).collect();
+    let words = &["more loaded than others: 3 frames, the first and the last,", "frame 5 has the least", "tared under"];
+    found(&design, &less(&touch, &at(1.0)), &[Kind::Tare], words);
+    // Recorded until it is loaded, and then with more contacts elsewhere.
+    let held: Vec<Vec<f64>> = [0.0, 0.0, 0.0, 0.5, 1.0].into_iter().map(at).collect();
+    found(&design, &less(&held, &at(1.0)), &[Kind::Tare], &["more loaded than others: 3 frames have"]);
+    let elsewhere = [&held[..3], &aside[..3], &held[..1]].concat();
+    found(&design, &less(&elsewhere, &at(1.0)), &[Kind::Tare], &["more loaded than others"]);
+    // The same touch with the other sign begins and ends at 0.
+    found(&design, &changed(&touch, |pa| -pa), &[Kind::Sign], &["compression must be negative"]);
 }

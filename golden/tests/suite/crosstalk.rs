@@ -151,3 +151,46 @@ fn check_measures_crosstalk_and_invents_none() {
     }
     println!("0 of {sets} sets without crosstalk have a finding; the shares found leave {worst:.2} % of F_z at most");
 }
+
+/// Of small grids a contact covers much: crosstalk shows on most of them, and none is invented.
+#[test]
+fn crosstalk_of_small_grids() {
+    let mut random = ChaCha8Rng::seed_from_u64(2);
+    for (columns, rows, least) in [(7, 5, 32), (6, 6, 22), (8, 4, 32), (5, 8, 40), (8, 8, 52)] {
+        let text = format!(
+            "format = 3\nbase = \"../golden/tests/plain.toml\"\nname = \"pad\"\n[sensor]\ncolumns = {columns}\n\
+             rows = {rows}\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n"
+        );
+        let design = Design::from_toml(&text, "pad.toml").unwrap();
+        let (mut found, mut worst, mut invented) = (0, 0.0_f64, 0);
+        for kind in Kind::ALL {
+            let contacts = kind.frames(&design.sensor, 0.5, 500..524).unwrap();
+            let share_of = |share: f64, noise: f64, random: &mut ChaCha8Rng| {
+                let findings = check(&design, &recorded(&design, &contacts, (share, noise), random), None);
+                let finding = findings.into_iter().find(|finding| finding.kind == Finds::Crosstalk)?;
+                Some(finding.to_string().rsplit("sensor.crosstalk = ").next()?.parse::<f64>().unwrap())
+            };
+            for noise in [0.0, 0.01, 0.02] {
+                let is = share_of(0.0, noise, &mut random);
+                if let Some(share) = is {
+                    println!("{columns}x{rows} {kind} invented {share}");
+                }
+                invented += usize::from(is.is_some());
+            }
+            for (share, noise) in [(0.01, 0.01), (0.02, 0.01), (0.05, 0.0)] {
+                let reads = |share: f64| 1.0 + share * (columns + rows) as f64;
+                if let Some(is) = share_of(share, noise, &mut random) {
+                    found += 1;
+                    worst = worst.max(100.0 * (reads(share) / reads(is) - 1.0).abs());
+                }
+            }
+        }
+        println!(
+            "{columns} x {rows}: found in {found} of 54, leaves {worst:.1} % of F_z, invented in {invented} of 54"
+        );
+        assert!(
+            found >= least && invented == 0 && worst < 3.5,
+            "{columns} x {rows}: {found}, {invented}, {worst:.1} %"
+        );
+    }
+}
