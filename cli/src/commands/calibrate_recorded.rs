@@ -114,9 +114,10 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
     let own = design.input.creep.take();
     let mut found_creep = find_creep(&design)?;
     let mut fitted = (design.clone(), [None, None]);
+    let mut settled = false;
     for _ in 0..ROUNDS {
         let creep = found_creep.map(|found| found.creep).or(own);
-        let mut settled = true;
+        settled = true;
         for pressed in given.iter_mut().flatten() {
             settled &= !pressed.free(creep, &fitted.0)?;
         }
@@ -126,7 +127,13 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
         fitted = fit(&design, &given)?;
         found_creep = find_creep(&fitted.0)?;
     }
-    let (mut design, results) = fitted;
+    let (mut design, mut results) = fitted;
+    if let Some(found) = results.iter_mut().flatten().last().filter(|_| !settled) {
+        found.remarks.push(format!(
+            "creep and what counts mean still change after {ROUNDS} rounds of fits: record the constant load for longer, \
+             unloaded before it"
+        ));
+    }
     // As the design reads them now: sign, unit and tare are what was fitted. A bladder loads every taxel.
     let findings = given[1].as_ref().map(|pressed| check(&design, &pressed.freed, Matrices::of(&design).ok().as_ref()));
     design.input.creep = found_creep.map(|found| found.creep).or(own);

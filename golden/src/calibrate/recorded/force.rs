@@ -34,8 +34,7 @@ const APART: f64 = 0.03;
 ///
 /// [`RecordedError::Recording`] for frames and forces that do not belong together or tell nothing at all.
 pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> Result<Recorded, RecordedError> {
-    let name = || design.name.clone();
-    let wrong = |(problem, remedy): loads::Wrong| RecordedError::Recording { name: name(), problem, remedy };
+    let wrong = |wrong| RecordedError::of(design, wrong);
     let (frames, measured, mut remarks) = loads::pair(design, frames, measured).map_err(wrong)?;
     remarks.splice(0..0, measured.remarks.iter().cloned());
     if sideways::is_all(&measured) {
@@ -133,14 +132,10 @@ fn verify(
     work: &Work<'_>,
     fitted: &Validated,
 ) -> Result<Option<String>, RecordedError> {
-    let wrong = |problem: String| {
-        RecordedError::Recording {
-        name: design.name.clone(),
-        problem,
-        remedy: "do frames and forces belong together? Give both a column of times, or cut them so that both begin with the \
-                 same touch"
-            .to_owned(),
-    }
+    let wrong = |problem| {
+        let remedy = "do frames and forces belong together? Give both a column of times, or cut them so that both begin with \
+                      the same touch";
+        RecordedError::of(design, (problem, remedy.to_owned()))
     };
     let solver = Solver::new(design)?;
     let largest = work.loads.iter().fold(0.0_f64, |most, &load| most.max(load));

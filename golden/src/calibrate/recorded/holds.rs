@@ -23,6 +23,8 @@ const MOST: usize = 400;
 const STUCK: f64 = 0.95;
 /// From this many frames on a hold tells how its reading creeps.
 const CREEPS: usize = 10;
+/// A load is constant if no fifth of its frames differs from the first by more than this share; a ramp's do.
+const CONSTANT: f64 = 0.02;
 
 /// A stretch of frames with one load at one place.
 #[derive(Clone, Debug)]
@@ -39,7 +41,7 @@ pub(super) struct Hold {
     pub(super) contact: usize,
     /// Where it is.
     pub(super) place: usize,
-    /// How far the sum of the readings rises from the first fifth to the last, as a share of its mean.
+    /// How far the sum of the readings rises from the first fifth to the last, as a share of its mean; of a constant load alone.
     pub(super) creep: Option<f64>,
 }
 
@@ -234,11 +236,18 @@ fn holds(
             let mean = |axis: usize| {
                 frames.clone().map(|k| measured.forces[k][axis]).sum::<Option<f64>>().map(|sum| sum / count)
             };
-            let creep = (frames.len() >= CREEPS).then(|| {
-                let sums: Vec<f64> = readings.iter().map(|x| x.iter().sum()).collect();
-                let fifth = sums.len() / 5;
-                let of = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
-                (of(&sums[sums.len() - fifth..]) - of(&sums[..fifth])) / of(&sums)
+            let fifths = |values: Vec<f64>| {
+                let (fifth, sum) = (values.len() / 5, values.iter().sum::<f64>());
+                let share = |part: &[f64]| part.iter().sum::<f64>() * count / (fifth as f64 * sum);
+                [0, 1, 2, 3, 4].map(|number| share(&values[number * fifth..][..fifth]))
+            };
+            let is_constant = || {
+                let loads = fifths(frames.clone().map(load).collect());
+                loads.iter().all(|share| (share - loads[0]).abs() <= CONSTANT)
+            };
+            let creep = (frames.len() >= CREEPS && is_constant()).then(|| {
+                let [first, .., last] = fifths(readings.iter().map(|x| x.iter().sum()).collect());
+                last - first
             });
             holds.push(Hold {
                 x,

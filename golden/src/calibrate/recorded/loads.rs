@@ -17,8 +17,10 @@ const PARTS: usize = 8;
 const APART_IN_PART: f64 = 4.0;
 /// A part tells something if its loads range over this share of the range of all.
 const TELLS: f64 = 0.5;
-/// Parts on either side of missing frames that agree, at least.
+/// Parts on either side of missing frames that agree, at least,
 const AGREE: usize = 2;
+/// or the first or the last part alone, if its loads cross the middle so often: what ends within a touch looks late.
+const CROSSINGS: usize = 3;
 
 /// What is wrong with a recording, and what to do.
 pub(super) type Wrong = (String, String);
@@ -102,11 +104,19 @@ fn missing(readings: &[f64], loads: &[Option<f64>]) -> Option<(usize, isize)> {
     let begins = |lag: isize, other: isize| -> Vec<usize> {
         parts.iter().filter(|(_, lags)| lags.allow(lag) && !lags.allow(other)).map(|(begin, _)| *begin).collect()
     };
+    let is_end = |begin: usize| {
+        let loads: Vec<f64> = loads[begin..][..length].iter().flatten().copied().collect();
+        let [least, most] = [f64::min, f64::max].map(|pick| loads.iter().copied().reduce(pick).unwrap_or(0.0));
+        let is_above = |load: f64| load > f64::midpoint(least, most);
+        let crossings = loads.windows(2).filter(|pair| is_above(pair[0]) != is_above(pair[1])).count();
+        (begin == 0 || begin == (PARTS - 1) * length) && crossings >= CROSSINGS
+    };
+    let agree = |begins: &[usize]| begins.len() >= AGREE || begins.iter().any(|&begin| is_end(begin));
     let lags: Vec<isize> = parts.iter().filter_map(|(_, lags)| lags.best().ok()).collect();
     let mut pairs = lags.iter().flat_map(|&before| lags.iter().map(move |&after| (before, after)));
     pairs.find_map(|(before, after)| {
         let [earlier, later] = [begins(before, after), begins(after, before)];
-        let enough = earlier.len().min(later.len()) >= AGREE;
+        let enough = agree(&earlier) && agree(&later) && earlier.len().max(later.len()) >= AGREE;
         let (end, begin) = (earlier.last()? + length, *later.first()?);
         (enough && end <= begin).then_some((usize::midpoint(end, begin), after - before))
     })
@@ -234,7 +244,16 @@ mod tests {
     /// Whichever file lacks what, wherever, and also if the files do not begin together.
     #[test]
     fn what_is_missing_is_told_by_file_number_and_frame() {
-        for (place, lost, begin) in [(0.5, 10, 0), (0.3, 3, 0), (0.7, 10, 0), (0.7, 1, 0), (0.7, 5, 20)] {
+        for (place, lost, begin) in [
+            (0.5, 10, 0),
+            (0.3, 3, 0),
+            (0.7, 10, 0),
+            (0.7, 1, 0),
+            (0.7, 5, 20),
+            (0.15, 10, 0),
+            (0.85, 10, 0),
+            (0.85, 3, 20),
+        ] {
             let all = touches(1600);
             let at = (place * all.len() as f64) as usize;
             let mut some = all.clone();

@@ -31,6 +31,8 @@ pub use report::{Errors, Hold, Recorded, TaxelGain};
 pub use table::{Measured, read_forces, read_pressures};
 pub use uniform::fit_uniform;
 
+use crate::design::Design;
+use crate::frames::FrameError;
 use crate::solver::SolverError;
 
 /// Why constants cannot be found from a recording.
@@ -46,6 +48,9 @@ pub enum RecordedError {
         /// What to do.
         remedy: String,
     },
+    /// A file that cannot be read.
+    #[error(transparent)]
+    Read(#[from] FrameError),
     /// Frames and forces that tell nothing.
     #[error("{name}: {problem}; {remedy}")]
     Recording {
@@ -59,4 +64,10 @@ pub enum RecordedError {
     /// The sensor's matrices or the filter.
     #[error(transparent)]
     Solver(#[from] SolverError),
+}
+
+impl RecordedError {
+    fn of(design: &Design, (problem, remedy): loads::Wrong) -> Self {
+        Self::Recording { name: design.name.clone(), problem, remedy }
+    }
 }

@@ -29,7 +29,7 @@ pub(super) fn fit(
     mut measured: Measured,
     mut remarks: Vec<String>,
 ) -> Result<Recorded, RecordedError> {
-    let wrong = |(problem, remedy)| RecordedError::Recording { name: design.name.clone(), problem, remedy };
+    let wrong = |wrong| RecordedError::of(design, wrong);
     let solver = Solver::new(design)?;
     let mut found = Vec::with_capacity(frames.len());
     for frame in frames {

@@ -33,8 +33,7 @@ const BORDER: f64 = 0.1;
 ///
 /// [`RecordedError::Recording`] for pressures that do not belong to the frames, or too many taxels that read nothing.
 pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> Result<Recorded, RecordedError> {
-    let name = || design.name.clone();
-    let wrong = |(problem, remedy): loads::Wrong| RecordedError::Recording { name: name(), problem, remedy };
+    let wrong = |wrong| RecordedError::of(design, wrong);
     let (frames, measured, mut remarks) = loads::pair(design, frames, measured).map_err(wrong)?;
     remarks.splice(0..0, measured.remarks.iter().cloned());
     // With crosstalk a taxel under the pressure of all reads so many times that.
@@ -172,11 +171,13 @@ impl<'a> Uniform<'a> {
         let x: Vec<&[f64]> = self.holds.all.iter().map(|hold| hold.x.as_slice()).collect();
         let loads: Vec<f64> = self.holds.all.iter().map(|hold| hold.load).collect();
         let count = self.living().count() as f64;
+        let weights = |gains: &[f64]| {
+            let share = |(gain, &alive): (&f64, &bool)| if alive { gain / count } else { 0.0 };
+            vec![gains.iter().zip(&self.alive).map(share).collect::<Vec<f64>>(); x.len()]
+        };
         let mut gains = vec![1.0; self.alive.len()];
         for _ in 0..ROUNDS {
-            let share: Vec<f64> =
-                gains.iter().zip(&self.alive).map(|(gain, &alive)| if alive { gain / count } else { 0.0 }).collect();
-            let weights = vec![share; x.len()];
+            let weights = weights(&gains);
             let terms = self.terms(&weights, &x, &loads);
             let shape = shape::fit(kind, &terms, holds);
             for taxel in self.living() {
@@ -191,10 +192,7 @@ impl<'a> Uniform<'a> {
             self.living().for_each(|taxel| gains[taxel] /= mean);
         }
         // The curve belongs to the last gains.
-        let share: Vec<f64> =
-            gains.iter().zip(&self.alive).map(|(gain, &alive)| if alive { gain / count } else { 0.0 }).collect();
-        let weights = vec![share; x.len()];
-        (shape::fit(kind, &self.terms(&weights, &x, &loads), holds), gains)
+        (shape::fit(kind, &self.terms(&weights(&gains), &x, &loads), holds), gains)
     }
 
     /// Relative errors of every taxel's pressure.

@@ -182,6 +182,23 @@ fn a_root_with_noise_creep_and_offsets() {
 }
 
 #[test]
+fn a_ramp_is_no_constant_load() {
+    let plain = Recipe { scale: 40.0, places: 12, loads: vec![6.0], frames: 1, ..Recipe::new(78, Indenter::Disc) };
+    let recording = record(&plain);
+    let (mut frames, mut forces) = (Vec::new(), Vec::new());
+    for (frame, force) in recording.frames.iter().zip(&recording.measured.forces) {
+        // Slowly released, so that a hold of nearly the same load has many frames.
+        for step in 0..if force[2] == Some(0.0) { 1 } else { 300 } {
+            let share = 1.0 - f64::from(step) / 400.0;
+            frames.push(frame.iter().map(|count| (share * count).round()).collect());
+            forces.push(force.map(|force| Some(share * force?)));
+        }
+    }
+    let found = fit_forces(&design(COUNTS, ""), &frames, &Measured::of_forces(forces)).unwrap();
+    assert!(!says(&found.remarks, &["creeps"]), "{:?}", found.remarks);
+}
+
+#[test]
 fn a_falling_sensor_and_the_end_of_the_converter() {
     let mut recording = record(&Recipe { scale: 22.0, noise: 1.0, places: 16, ..Recipe::new(74, Indenter::Disc) });
     recording.frames.iter_mut().flatten().for_each(|count| *count = 4095.0 - *count);
