@@ -68,13 +68,14 @@ pub(crate) struct Unclear {
 }
 
 impl Marks {
-    /// Takes a field. Points count between semicolons, where a comma may be the decimal point.
+    /// Takes a field. Points count between semicolons and tabs, where a comma may be the decimal point.
     ///
     /// # Errors
     ///
     /// A field that is a number only with separators of thousands.
     pub(crate) fn take(&mut self, field: &[u8], separator: Separator, place: [usize; 2]) -> Result<(), Unclear> {
-        let points = Some(field).filter(|_| matches!(separator, Separator::Byte(b';'))).and_then(Comma::of_points);
+        let points =
+            Some(field).filter(|_| matches!(separator, Separator::Byte(b';' | b'\t'))).and_then(Comma::of_points);
         for (of, (mark, found)) in [("comma", Comma::of(field)), ("point", points)].into_iter().enumerate() {
             let unclear = || Unclear { place, text: String::from_utf8_lossy(field).chars().take(40).collect(), mark };
             match (found, number(field)) {

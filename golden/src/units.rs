@@ -7,7 +7,7 @@ const GRAVITY: f64 = 9.806_65;
 pub(crate) fn seconds(name: &str) -> Option<f64> {
     let lower = name.to_lowercase();
     let mut words = lower.split(|c: char| !c.is_alphanumeric() && c != 'µ').filter(|word| !word.is_empty());
-    let is_time = matches!(words.next()?, "t" | "time" | "timestamp" | "zeit");
+    let is_time = matches!(words.next()?, "t" | "time" | "timestamp" | "datetime" | "zeit");
     let unit = match words.next() {
         None | Some("s" | "sec" | "seconds") => 1.0,
         Some("ms" | "millis" | "milliseconds") => 1e-3,
@@ -16,6 +16,33 @@ pub(crate) fn seconds(name: &str) -> Option<f64> {
         Some(_) => return None,
     };
     is_time.then_some(unit)
+}
+
+/// Seconds since 1970 of a time stamp of ISO 8601, such as 2026-03-01T12:00:00.123: with T or a space, without a zone or with
+/// Z or +01:00.
+pub(crate) fn timestamp(text: &str) -> Option<f64> {
+    let (date, time) = text.trim().split_once(['T', ' '])?;
+    let whole = |part: &str, digits: usize| {
+        (part.len() == digits && part.bytes().all(|byte| byte.is_ascii_digit())).then(|| part.parse::<i64>().ok())?
+    };
+    let [year, month, day] = <[&str; 3]>::try_from(date.split('-').collect::<Vec<_>>()).ok()?;
+    let [year, month, day] = [whole(year, 4)?, whole(month, 2)?, whole(day, 2)?];
+    // The year begins in March, so that a leap day is its last.
+    let (years, months) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
+    let days = 365 * years + years / 4 - years / 100 + years / 400 + (153 * months + 2) / 5 + day - 719_469;
+    let (time, zone) = time.split_at(time.find(['Z', '+', '-']).unwrap_or(time.len()));
+    let of_day = |time: &str| {
+        let mut parts = time.splitn(3, ':');
+        let [hours, minutes] = [whole(parts.next()?, 2)?, whole(parts.next()?, 2)?];
+        let seconds = parts.next().map_or(Some(0.0), |seconds| seconds.replace(',', ".").parse::<f64>().ok())?;
+        ((0.0..61.0).contains(&seconds) && hours < 24 && minutes < 60)
+            .then_some((3600 * hours + 60 * minutes) as f64 + seconds)
+    };
+    let ahead = match zone.split_at_checked(1) {
+        None | Some(("Z", "")) => 0.0,
+        Some((sign, zone)) => of_day(zone)? * if sign == "-" { -1.0 } else { 1.0 },
+    };
+    ((1..=12).contains(&month) && (1..=31).contains(&day)).then_some((86_400 * days) as f64 + of_day(time)? - ahead)
 }
 
 /// Pascals of a unit of pressure: one of its own, or a force on an area. Nothing for another unit.
@@ -55,4 +82,27 @@ pub(crate) fn force_or_pressure(unit: &str) -> Option<(f64, bool)> {
         "mmhg" => (133.322_387, true),
         _ => return None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::timestamp;
+
+    #[test]
+    fn time_stamps_are_seconds() {
+        for (text, seconds) in [
+            ("1970-01-01T00:00:00Z", 0.0),
+            ("2000-02-29 12:00:01.5", 951_825_601.5),
+            ("2026-03-01T12:00:00.123", 1_772_366_400.123),
+            ("2026-03-01T12:00:00,123Z", 1_772_366_400.123),
+            ("2026-03-01T14:00:00.123+02:00", 1_772_366_400.123),
+            ("2026-03-01 09:30-02:30", 1_772_366_400.0),
+        ] {
+            assert_eq!(timestamp(text), Some(seconds), "{text}");
+        }
+        for text in ["2026-03-01", "12:00:00", "2026-13-01T12:00:00", "2026-03-01T25:00", "2026-03-01T12:00:xx", "1 2"]
+        {
+            assert_eq!(timestamp(text), None, "{text}");
+        }
+    }
 }

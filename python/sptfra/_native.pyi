@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Sequence
-from typing import Any, final
+from typing import Any, Literal, final, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -155,6 +155,7 @@ class FrameLines:
     def frame(self, line: bytes) -> npt.NDArray[np.float64] | None:
         """The frame (rows, columns) of the next line; None for a header, a blank line and a remark."""
 
+@overload
 def load_frames(
     path: str | os.PathLike[str],
     design: Design,
@@ -162,12 +163,23 @@ def load_frames(
     labels: int = 0,
     columns: tuple[int, int] | None = None,
     skip_lines: int = 0,
-    skip_bad: bool = False,
-) -> npt.NDArray[np.float64]:
+    skip_bad: Literal[False] = False,
+) -> npt.NDArray[np.float64]: ...
+@overload
+def load_frames(
+    path: str | os.PathLike[str],
+    design: Design,
+    *,
+    labels: int = 0,
+    columns: tuple[int, int] | None = None,
+    skip_lines: int = 0,
+    skip_bad: Literal[True],
+) -> tuple[npt.NDArray[np.float64], list[int]]:
     """Frames (n, rows, columns) of a CSV or .npy file.
 
     Its lines begin with `labels` other columns, or the values are the `columns` (first, last), from 1. `skip_lines` are
-    passed over at the beginning. With `skip_bad` frames with a value that is no number are left out.
+    passed over at the beginning. With `skip_bad` frames with a value that is no number are left out; returned are the
+    frames, and the places of those left out among all, from 0.
     """
 
 def scene(

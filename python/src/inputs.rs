@@ -13,6 +13,7 @@ use golden::scene::{ChoiceError, Kind, Scene, SceneFrame};
 use golden::solver::{Solution, Status};
 use golden::words;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
@@ -46,7 +47,8 @@ pub fn load_frames<'py>(
     })?;
     warn(py, recording.remark)?;
     let shape = [recording.frames.len(), design.sensor.rows, design.sensor.columns];
-    array(py, recording.frames.concat(), &shape)
+    let frames = array(py, recording.frames.concat(), &shape)?;
+    if skip_bad { (frames, recording.skipped).into_bound_py_any(py) } else { Ok(frames) }
 }
 
 /// Says what is to be known of a header.

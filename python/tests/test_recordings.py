@@ -73,9 +73,9 @@ class Judging(unittest.TestCase):
             with self.assertWarnsRegex(UserWarning, "line 1: numbers up to 11"):
                 self.assertEqual(sptfra.load_frames(file, design()).shape, (1, 3, 4))
             file.write_text(f"anything: 5\n{line},99\n{line},--\n{line.replace('-', 'x', 1)},99\n", encoding="utf-8")
-            with self.assertWarnsRegex(UserWarning, "1 lines are left out"):
-                found = sptfra.load_frames(file, design(), columns=(1, 12), skip_lines=1, skip_bad=True)
-            self.assertEqual(found.shape, (2, 3, 4))
+            with self.assertWarnsRegex(UserWarning, "1 frames are left out"):
+                found, bad = sptfra.load_frames(file, design(), columns=(1, 12), skip_lines=1, skip_bad=True)
+            self.assertEqual((found.shape, bad), ((2, 3, 4), [2]))
         lines = sptfra.FrameLines(design())
         with self.assertWarns(UserWarning):
             self.assertIsNone(lines.frame(numbers.encode()))

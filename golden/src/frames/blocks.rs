@@ -9,23 +9,25 @@ use super::layout::{Layout, Target};
 use super::text::{Lines, Text};
 use super::{FrameError, header};
 use crate::sensor::Sensor;
-use crate::separator::{self, Separator, is_unknown};
+use crate::separator::{self, Separator, is_unknown, no_number};
 use crate::units::pascals;
 
 /// A line of a file.
 struct Line<'a> {
     number: usize,
     content: &'a [u8],
-    /// Its fields, if they are numbers.
+    /// Its fields behind the labels, if they are numbers.
     row: Option<Vec<&'a [u8]>>,
 }
 
 /// Frames of a file, each on one line.
 pub(super) struct Blocks {
-    /// The first line of each, from 1, and its fields, separated by semicolons or tabs.
-    frames: Vec<(usize, Vec<u8>)>,
-    /// Whether numbers of the columns stand above.
-    is_numbered: bool,
+    /// The first line of each, from 1, and its fields; or why it is left out.
+    frames: Vec<(usize, Result<Vec<u8>, FrameError>)>,
+    /// What separates them.
+    separator: u8,
+    /// What else stands in the lines, in words.
+    beside: &'static str,
     /// The unit that the header names.
     unit: Option<String>,
 }
@@ -33,7 +35,7 @@ pub(super) struct Blocks {
 impl Blocks {
     /// The frames.
     pub(super) fn read(
-        &self,
+        self,
         mut lines: Lines,
         target: &Target,
         wrong_length: impl Fn(usize) -> Option<usize>,
@@ -42,38 +44,53 @@ impl Blocks {
         let (unit, remark) = self.unit.as_ref().map_or((None, None), |unit| header::worth(unit, target, -1.0));
         let path = lines.path().display().to_string();
         let mut text = Text::default();
-        for (line, frame) in &self.frames {
-            lines.begin_block(*line, columns, unit);
-            if let Some(row) = lines.row(frame, &wrong_length)? {
+        for (line, frame) in self.frames {
+            lines.begin_block(line, columns, unit, self.separator);
+            let row = frame.and_then(|frame| lines.row(&frame, &wrong_length));
+            if let Some(row) = row.or_else(|error| lines.leave_out(line, error))? {
                 text.rows.push(row);
-                text.lines.push(*line);
+                text.lines.push(line);
             }
         }
         lines.end(&mut text)?;
-        let numbers = if self.is_numbered { ", below numbers of the columns" } else { "" };
-        text.remarks.push(format!("{path}: frames are blocks of {rows} lines of {columns} values{numbers}"));
+        text.remarks.push(format!("{path}: frames are blocks of {rows} lines of {columns} values{}", self.beside));
         text.remarks.extend(remark.map(|remark| format!("{path}: {remark}")));
         Ok(text)
     }
 }
 
 /// Puts the rows of each frame on one line; nothing if the file has a line for each frame, or lines of other lengths.
-pub(super) fn join(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) -> Result<Option<Blocks>, FrameError> {
+pub(super) fn join<'a>(
+    path: &Path,
+    bytes: &'a [u8],
+    layout: &Layout,
+    target: &Target,
+) -> Result<Option<Blocks>, FrameError> {
     let (columns, rows) = (target.sensor.columns, target.sensor.rows);
-    let mut all: Vec<Line> = separator::lines(bytes)
-        .enumerate()
-        .skip(layout.skip_lines)
-        .map(|(index, line)| Line { number: index + 1, content: line.trim_ascii(), row: row(line, columns) })
-        .collect();
-    let of_length =
-        |length: usize| all.iter().filter(move |line| line.row.as_ref().is_some_and(|row| row.len() == length)).count();
-    if rows == 1 || of_length(target.sensor.taxels()) > 0 {
+    let behind = |labels: usize| -> Vec<Line<'a>> {
+        let of = |(index, line): (usize, &'a [u8])| {
+            let content = Separator::of(line.trim_ascii()).trim(line);
+            Line { number: index + 1, content, row: row(content, columns, labels) }
+        };
+        separator::lines(bytes).enumerate().skip(layout.skip_lines).map(of).collect()
+    };
+    let of_length = |all: &[Line], length: usize| {
+        all.iter().filter(|line| line.row.as_ref().is_some_and(|row| row.len() == length)).count()
+    };
+    let mut all = behind(layout.labels);
+    if rows == 1 || of_length(&all, target.sensor.taxels()) > 0 {
         return Ok(None);
     }
     let wrong = |line: usize, problem: String| FrameError::Shape { path: path.to_path_buf(), line, problem };
-    if of_length(columns) < rows {
+    // Numbers of the columns above frames, as pandas writes them: without them the rows are whole frames.
+    let numbers = Sensor { rows: 1, ..target.sensor.clone() };
+    let may_be_labelled = layout.labels == 1 || layout.labels == 0 && of_length(&all, columns) == 0;
+    let labelled = may_be_labelled.then(|| behind_labels(behind(1), &numbers, rows)).flatten();
+    let is_labelled = labelled.is_some();
+    all = labelled.unwrap_or(all);
+    if of_length(&all, columns) < rows {
         // The rows of the grid laid on its side.
-        return match of_length(rows) {
+        return match of_length(&all, rows) {
             lines if columns > 1 && lines > 0 && lines.is_multiple_of(columns) && rows != columns => Err(wrong(
                 all.iter().find(|line| line.row.is_some()).map_or(1, |line| line.number),
                 format!(
@@ -84,8 +101,6 @@ pub(super) fn join(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
             _ => Ok(None),
         };
     }
-    // Numbers of the columns above frames, as pandas writes them: without them the rows are whole frames.
-    let numbers = Sensor { rows: 1, ..target.sensor.clone() };
     let head = all.iter().find_map(|line| Some((line.content, line.row.as_ref()?)));
     let head = head.filter(|(_, row)| header::is_numbered(row, &numbers, true)).map(|(content, _)| content);
     let is_row = |line: &&Line| line.row.as_ref().is_some_and(|row| row.len() == columns) && Some(line.content) != head;
@@ -94,43 +109,91 @@ pub(super) fn join(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
     if is_numbered {
         all.iter_mut().filter(|line| Some(line.content) == head).for_each(|line| line.row = None);
     }
-    // Points between semicolons may separate thousands.
-    let separator: &[u8] =
-        if all.iter().any(|line| line.row.is_some() && line.content.contains(&b';')) { b";" } else { b"\t" };
-    let (mut frames, mut block) = (Vec::new(), Vec::new());
-    for Line { number, content, row } in &all {
+    // Points between semicolons or tabs may separate thousands; no number has a control character.
+    let is_marked = |line: &Line| line.row.is_some() && line.content.iter().any(|byte| b";\t".contains(byte));
+    let separator = if all.iter().any(is_marked) { b';' } else { 0x1f };
+    let unit = unit(&all);
+    let (mut frames, mut run) = (Vec::new(), Vec::new());
+    let last = all.iter().rposition(|line| !line.content.is_empty()).map_or(0, |last| last + 1);
+    all.truncate(last);
+    all.push(Line { number: last + layout.skip_lines, content: b"", row: None });
+    for (index, Line { number, content, row }) in all.iter().enumerate() {
         match row {
-            Some(row) if row.len() == columns => block.push(row.join(separator)),
-            _ if block.is_empty() || content.starts_with(b"#") => {}
+            Some(row) if row.len() == columns => run.push((*number, Some(row.join(&separator)))),
+            // A row that is damaged ends no frame.
+            _ if layout.skip_bad && run.len() % rows > 0 && Some(*content) != head && is_damaged(content) => {
+                run.push((*number, None));
+            }
+            _ if run.is_empty() || content.starts_with(b"#") && !layout.skip_bad => {}
             _ => {
-                let found = block.len();
-                return Err(wrong(
-                    *number,
+                let found = run.len();
+                let problem = if index == last {
+                    format!("the file ends within a frame, after {} of {rows} rows", found % rows)
+                } else {
                     format!(
-                        "a block of {found} rows ends here where the sensor has {rows}; skip lines above the first frame with \
-                         --skip-lines N"
-                    ),
-                ));
+                        "a block of {found} rows ends here where the sensor has {rows}; skip lines above the first frame \
+                         with --skip-lines N"
+                    )
+                };
+                // A row too many is that of a single block.
+                let is_alone = index == last && frames.is_empty();
+                let whole = if found % rows == 0 || is_alone || found > 2 * rows { found / rows } else { 0 };
+                for frame in run[..whole * rows].chunks(rows) {
+                    let damaged = frame.iter().find(|(_, row)| row.is_none());
+                    let joined = frame.iter().map_while(|(_, row)| row.as_deref()).collect::<Vec<_>>().join(&separator);
+                    let problem = || format!("this row of a block has no {columns} numbers");
+                    frames.push((frame[0].0, damaged.map_or(Ok(joined), |(line, _)| Err(wrong(*line, problem())))));
+                }
+                if whole * rows < found {
+                    frames.push((run[whole * rows].0, Err(wrong(*number, problem))));
+                }
+                run.clear();
             }
         }
-        if block.len() == rows {
-            frames.push((number + 1 - rows, std::mem::take(&mut block).join(separator)));
-        }
     }
-    if !block.is_empty() {
-        let problem = format!("the file ends within a frame, after {} of {rows} rows", block.len());
-        return Err(wrong(all.len(), problem));
-    }
-    Ok(Some(Blocks { frames, is_numbered, unit: unit(&all) }))
+    let beside = match (is_labelled, is_numbered) {
+        (false, false) => "",
+        (false, true) => ", below numbers of the columns",
+        (true, _) => ", behind labels of the rows",
+    };
+    Ok(Some(Blocks { frames, separator, beside, unit }))
 }
 
-/// The fields of a line that has nothing but numbers and readings that are not there.
-fn row(line: &[u8], columns: usize) -> Option<Vec<&[u8]>> {
-    let separator = Separator::of(line.trim_ascii());
-    let fields = separator.at_most(columns, separator.trim(line));
+/// The fields of a line behind so many labels, if they are nothing but numbers and readings that are not there.
+fn row(line: &[u8], columns: usize, labels: usize) -> Option<Vec<&[u8]>> {
+    let fields = Separator::of(line).at_most(columns + labels, line).get(labels..)?.to_vec();
     let is_number = |field: &&[u8]| separator::number(field).is_some_and(f64::is_finite);
     let is_reading = |field: &&[u8]| separator::number(field).is_some() || is_unknown(&String::from_utf8_lossy(field));
     (fields.iter().all(is_reading) && fields.iter().any(is_number)).then_some(fields)
+}
+
+/// Whether a line is one of numbers for the most part.
+fn is_damaged(line: &[u8]) -> bool {
+    let fields = Separator::of(line).fields(line);
+    !line.starts_with(b"#")
+        && fields.len() > 1
+        && 2 * fields.iter().filter(|field| separator::number(field).is_some()).count() > fields.len()
+}
+
+/// Lines whose rows stand behind labels, words that are the same for each frame, or numbers from 0 or 1 on; nothing if they
+/// do not. A blank label, or a word beside numbers of the columns, is that of a header.
+fn behind_labels<'a>(mut lines: Vec<Line<'a>>, numbers: &Sensor, rows: usize) -> Option<Vec<Line<'a>>> {
+    let mut labels: Vec<&[u8]> = Vec::new();
+    for line in &mut lines {
+        let Some(row) = line.row.as_ref().filter(|row| row.len() == numbers.columns) else { continue };
+        let label = Separator::of(line.content).split(line.content)[0];
+        if label.is_empty() || no_number(label) && header::is_numbered(row, numbers, false) {
+            line.row = None;
+        } else {
+            labels.push(label);
+        }
+    }
+    let first = labels.get(..rows)?;
+    let counts = |from: usize| (from..).zip(first).all(|(number, label)| *label == number.to_string().as_bytes());
+    let are_words =
+        first.iter().all(|label| no_number(label)) && (1..rows).all(|row| !first[..row].contains(&first[row]));
+    let are_labels = (counts(0) || counts(1) || are_words) && labels.iter().all(|label| first.contains(label));
+    are_labels.then_some(lines)
 }
 
 /// The unit that a line of words above the frames names: a known one, or else the word behind "unit".

@@ -1,10 +1,11 @@
 //! What is wrong with files of frames, where, and what to do about it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::design::Samples;
 use crate::geometry::GeometryError;
 use crate::output::OutputError;
+use crate::separator::Unclear;
 
 /// What is wrong with a frame file.
 #[derive(Debug, thiserror::Error)]
@@ -175,6 +176,11 @@ pub enum FrameError {
 }
 
 impl FrameError {
+    pub(crate) fn thousands(path: &Path, unclear: &Unclear) -> Self {
+        let Unclear { place: [line, column], text, mark } = unclear.clone();
+        Self::Thousands { path: path.to_path_buf(), line, column, text, mark }
+    }
+
     /// Whether a line of text is one that was cut off at its beginning: too few values, or a first one that is none.
     pub fn is_of_a_cut_line(&self) -> bool {
         match self {

@@ -28,10 +28,6 @@ const OTHERS: [(&[u8], &str, &str); 14] = [
 
 /// What a file is that holds no frames by its format, and what to do.
 pub(super) fn other(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
-    // A mark, and a digit or a sign in two bytes.
-    if let [0xff, 0xfe, _, 0, ..] | [0xfe, 0xff, 0, ..] = bytes {
-        return Some(("text in UTF-16", "save it as CSV in UTF-8"));
-    }
     let begin = bytes.trim_ascii_start();
     if begin.starts_with(b"{") || begin.starts_with(b"[{") || begin.starts_with(b"[[") {
         return Some(("JSON", "write the values of each frame on a line, separated by commas: jq -r '.values | @csv'"));

@@ -70,8 +70,16 @@ impl Header {
                 values[taxels - 1]
             ));
         }
-        let (_, unit) = split(&values[0]);
-        if !unit.is_empty() && values.iter().all(|name| split(name).1 == unit) {
+        let units = || values.iter().map(|name| split(name).1);
+        let unit = split(&values[0]).1;
+        let other = units().find(|other| pascals(other) != pascals(unit));
+        if let Some(other) = other.filter(|_| !target.counts) {
+            let [one, other] = [unit, other].map(|unit| if unit.is_empty() { "none" } else { unit });
+            return Err(format!(
+                "the header names several units, {one} and {other}: give all values in one unit, and name it in each column"
+            ));
+        }
+        if !unit.is_empty() && units().all(|other| other == unit) {
             let (worth, remark) = worth(unit, target, 1.0);
             header.unit = worth;
             header.remarks.extend(remark);
@@ -182,15 +190,17 @@ pub(super) fn is_numbered(fields: &[&[u8]], sensor: &Sensor, alone: bool) -> boo
     sorted[0] < 2 && (is_grid || is_each && (!alone || numbers.len() >= FEWEST_ALONE || numbers.is_sorted()))
 }
 
-/// Whether the first of these rows is a header of whole numbers that ascend, or that stand behind a word where others have a
-/// number. No other row is like it, but for headers between recordings.
-pub(super) fn is_guessed(rows: &[Vec<f64>], labels: &[bool]) -> bool {
-    let Some(first) = rows.first() else { return false };
+/// Which of these rows are a header of whole numbers that ascend, or that stand behind a word where others have a number: the
+/// first, and those that are the same between recordings. Nothing if it is a frame.
+pub(super) fn guessed(rows: &[Vec<f64>], labels: &[bool]) -> Option<Vec<bool>> {
+    let first = rows.first()?;
     let again: Vec<bool> = (0..rows.len()).map(|row| rows[row] == *first && labels[row] == labels[0]).collect();
     let others = || (0..rows.len()).filter(|&row| !again[row]);
     let ascend = ascends(first) && !others().any(|row| ascends(&rows[row]));
     let is_labelled = is_whole(first) && !labels[0] && others().all(|row| labels[row]);
-    others().next().is_some() && !again.windows(2).any(|pair| pair[0] && pair[1]) && (ascend || is_labelled)
+    let is_header =
+        others().next().is_some() && !again.windows(2).any(|pair| pair[0] && pair[1]) && (ascend || is_labelled);
+    is_header.then_some(again)
 }
 
 /// Whether all values are those of a count from 0 on.

@@ -1,13 +1,16 @@
 //! What to do about a line of frames that cannot be read.
 
 use super::layout::{Layout, Target};
-use crate::separator::is_unknown;
+use crate::separator::{self, is_unknown};
 
 /// About a field that is no number.
 pub(super) fn value(target: Option<&Target>, layout: &Layout, text: &str) -> String {
     if is_unknown(text) && target.is_some() {
         let skip = if layout.skip_bad { "" } else { ", or leave such frames out with --skip-bad" };
         return format!("name a taxel that is dead in sensor.dead{skip}");
+    }
+    if text.rsplit_once(':').is_some_and(|(_, value)| separator::number(value.trim().as_bytes()).is_some()) {
+        return "cut the names before the values: sed 's/[^,]*://g'".to_owned();
     }
     let counts = target.is_some_and(|target| target.counts);
     let what = if counts { "the sensor's count, such as 1012" } else { "the stress in pascals, such as -1250.5" };

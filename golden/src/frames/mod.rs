@@ -35,7 +35,8 @@ use crate::sensor::Sensor;
 pub struct Frames {
     /// One value for each taxel.
     pub frames: Vec<Vec<f64>>,
-    /// The time of each frame in seconds, where the file's header names a column of times before the values.
+    /// The time of each frame in seconds, where the file's header names a column of times before the values, or one has time
+    /// stamps.
     pub times: Option<Vec<f64>>,
     /// Frames that were left out (`--skip-bad`), by their place among all in the file, from 0.
     pub skipped: Vec<usize>,
@@ -110,8 +111,8 @@ pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -
     let found = frames.iter().enumerate().find_map(|(frame, values)| Some((frame, wrong(values)?)));
     let Some((frame, column)) = found else {
         let remark = (!remarks.is_empty()).then(|| remarks.join("; "));
-        // A header that was taken for a row has no time.
-        let times = times.filter(|times| times.len() == frames.len() && times.iter().all(|time| time.is_finite()));
+        let has_times = times.len() == frames.len() && times.iter().all(|time| time.is_finite());
+        let times = has_times.then_some(times);
         return Ok(Frames { frames, times, skipped, remark });
     };
     let place = match lines.get(frame) {
@@ -138,12 +139,11 @@ fn read_table(
     wrong_length: impl Fn(usize) -> Option<usize>,
     check: impl Fn(&[usize]) -> Result<(), String>,
 ) -> Result<Text, FrameError> {
-    let bytes = bytes_of(path)?;
-    if !bytes.starts_with(npy::MAGIC) {
-        return text::read(path, &bytes, layout, target, wrong_length);
-    }
     let wrong = |problem| FrameError::Array { path: path.to_path_buf(), problem };
-    let array = npy::parse(&bytes).map_err(wrong)?;
+    let array = match content(path)? {
+        Content::Text(bytes) => return text::read(path, &bytes, layout, target, wrong_length),
+        Content::Array(array) => array,
+    };
     let [count, row @ ..] = array.shape.as_slice() else {
         return Err(wrong("it holds a single number".to_owned()));
     };
@@ -189,37 +189,45 @@ fn read_table(
     Ok(text)
 }
 
+/// What is in a file.
+pub(crate) enum Content {
+    /// Values of a `.npy` file, NaN among them.
+    Array(Array),
+    Text(Vec<u8>),
+}
+
 /// The content of a file that may be one of frames.
-fn bytes_of(path: &Path) -> Result<Vec<u8>, FrameError> {
+pub(crate) fn content(path: &Path) -> Result<Content, FrameError> {
     let mut bytes = std::fs::read(path).map_err(|source| FrameError::Read { path: path.to_path_buf(), source })?;
+    if bytes.starts_with(npy::MAGIC) {
+        let array = npy::parse(&bytes).map_err(|problem| FrameError::Array { path: path.to_path_buf(), problem })?;
+        return Ok(Content::Array(array));
+    }
     if bytes.starts_with(BYTE_ORDER_MARK) {
         bytes.drain(..BYTE_ORDER_MARK.len());
     }
+    // A mark of UTF-16, and a digit or a sign in two bytes.
+    let of_pair: Option<fn([u8; 2]) -> u16> = match bytes[..] {
+        [0xff, 0xfe, _, 0, ..] => Some(u16::from_le_bytes),
+        [0xfe, 0xff, 0, ..] => Some(u16::from_be_bytes),
+        _ => None,
+    };
+    if let Some(of_pair) = of_pair {
+        let letters: Vec<u16> = bytes[2..].chunks_exact(2).map(|pair| of_pair([pair[0], pair[1]])).collect();
+        bytes = String::from_utf16_lossy(&letters).into_bytes();
+    }
     match format::other(&bytes) {
         Some((what, remedy)) => Err(FrameError::Format { path: path.to_path_buf(), what, remedy }),
-        None => Ok(bytes),
+        None => Ok(Content::Text(bytes)),
     }
 }
 
 /// The first line of a file of text that is no remark; nothing for a `.npy` file.
 pub(crate) fn first_line(path: &Path) -> Result<Option<String>, FrameError> {
-    let bytes = bytes_of(path)?;
-    if bytes.starts_with(npy::MAGIC) {
-        return Ok(None);
-    }
+    let Content::Text(bytes) = content(path)? else { return Ok(None) };
     let text = String::from_utf8_lossy(&bytes);
     let line = text.split(['\n', '\r']).map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
     Ok(Some(line.unwrap_or("").to_owned()))
-}
-
-/// Shape and values of a `.npy` file, NaN among them; nothing for a file of text.
-pub(crate) fn read_array(path: &Path) -> Result<Option<Array>, FrameError> {
-    let bytes = bytes_of(path)?;
-    if !bytes.starts_with(npy::MAGIC) {
-        return Ok(None);
-    }
-    let array = npy::parse(&bytes).map_err(|problem| FrameError::Array { path: path.to_path_buf(), problem })?;
-    Ok(Some(array))
 }
 
 /// Whether frames of this shape, without the number of frames, are those of the sensor; else what they look like.

@@ -6,7 +6,8 @@ use super::header::{self, Header};
 use super::layout::{Layout, Target};
 use super::{FrameError, blocks, hints, is_number};
 use crate::geometry;
-use crate::separator::{self, Marks, Separator, Unclear, foreign, is_unknown, no_number};
+use crate::separator::{self, Marks, Separator, foreign, is_unknown, no_number};
+use crate::units::{pascals, timestamp};
 
 /// What some programs write before the first line.
 pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -21,8 +22,8 @@ pub(super) struct Text {
     pub(super) labels: usize,
     /// What stands above the rows.
     pub(super) header: Header,
-    /// The time of each row in seconds, where the header names such a column.
-    pub(super) times: Option<Vec<f64>>,
+    /// The time of each row in seconds, NaN where no column before the values has it.
+    pub(super) times: Vec<f64>,
     /// Rows that were left out, by their place among all, from 0.
     pub(super) skipped: Vec<usize>,
     pub(super) remarks: Vec<String>,
@@ -104,7 +105,7 @@ impl Lines {
         let bad = self
             .bad
             .as_ref()
-            .map(|(bad, first)| format!("{path}: {} lines are left out; the first: {first}", bad.len()));
+            .map(|(bad, first)| format!("{path}: {} frames are left out; the first: {first}", bad.len()));
         let last = self.labels() + self.target.as_ref().map_or(0, |target| target.sensor.taxels());
         let padded = self.padded.map(|_| format!("{path}: cells behind column {last} are blank, and are none"));
         let named = self.header.remarks.iter().map(|remark| format!("{path}, line {}: {remark}", self.header.line));
@@ -124,6 +125,15 @@ impl Lines {
     /// The column of a taxel, from 1.
     pub(super) fn column(&self, taxel: usize) -> usize {
         self.header.column(self.labels(), taxel)
+    }
+
+    /// The time of a line in seconds by its labels: of the column that the header names, or a time stamp.
+    fn time(&self, labels: &[&[u8]]) -> Option<f64> {
+        let of_header =
+            self.header.time.and_then(|(column, unit)| Some(unit * separator::number(labels.get(column)?)?));
+        let text = |columns: &[&[u8]]| timestamp(&String::from_utf8_lossy(&columns.join(&b' ')));
+        // Spaces part a stamp into date and time.
+        of_header.or_else(|| labels.chunks(1).chain(labels.windows(2)).find_map(text))
     }
 
     /// The numbers of the next line. Nothing for a blank one, for one that begins with #, for lines of names and units.
@@ -212,17 +222,26 @@ impl Lines {
         self.state = State::Rows;
         match self.values(separator, content, wrong_length) {
             Ok(row) => Ok(Some(row)),
-            Err(error) if self.layout.skip_bad => {
-                if let FrameError::Length { found, expected, .. } = error
-                    && found > expected
-                {
-                    self.too_long.get_or_insert((self.number, found));
-                }
-                self.bad.get_or_insert_with(|| (Vec::new(), error.to_string())).0.push(self.number);
-                Ok(None)
-            }
-            Err(error) => Err(error),
+            Err(error) => self.leave_out(self.number, error),
         }
+    }
+
+    /// Counts the frame of a line among those that are left out.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with it, if none is to be left out.
+    pub(super) fn leave_out(&mut self, line: usize, error: FrameError) -> Result<Option<Vec<f64>>, FrameError> {
+        if !self.layout.skip_bad {
+            return Err(error);
+        }
+        if let FrameError::Length { found, expected, .. } = error
+            && found > expected
+        {
+            self.too_long.get_or_insert((line, found));
+        }
+        self.bad.get_or_insert_with(|| (Vec::new(), error.to_string())).0.push(line);
+        Ok(None)
     }
 
     /// Takes the fields of a line for names of the columns.
@@ -293,7 +312,7 @@ impl Lines {
                 Some(columns) => [self.number + index / columns, index % columns + 1],
                 None => [self.number, index + 1],
             };
-            self.marks.take(field, separator, place).map_err(|unclear| thousands(&self.path, &unclear))?;
+            self.marks.take(field, separator, place).map_err(|unclear| FrameError::thousands(&self.path, &unclear))?;
             let number = separator::number(field).map(|value| value * unit).filter(|&value| is_number(value));
             let target = self.target.as_ref();
             let is_dead = || target.is_some_and(|target| target.dead.contains(&taxel(index - first)));
@@ -323,22 +342,24 @@ impl Lines {
         FrameError::Length { path: self.path.clone(), line: self.number, found, expected, hint }
     }
 
-    /// Whether the fields of a second line of words are units: the same for all taxels.
+    /// Whether the fields of a second line of words are units: the same for all taxels, or pressures.
     fn is_units(&self, values: &[&[u8]]) -> bool {
         let Some(target) = &self.target else { return false };
         let values = &values[..values.len().min(target.sensor.taxels())];
-        values.len() > 1 && values.iter().all(|field| *field == values[0])
+        let is_pressure = |field: &[u8]| pascals(&String::from_utf8_lossy(field)).is_some();
+        values.len() > 1 && values.iter().all(|field| *field == values[0] || is_pressure(field))
     }
 
     /// From now on a line is a frame whose rows have so many columns and begin at line `number`, in a unit worth so much.
-    pub(super) fn begin_block(&mut self, number: usize, columns: usize, unit: Option<f64>) {
+    pub(super) fn begin_block(&mut self, number: usize, columns: usize, unit: Option<f64>, separator: u8) {
+        self.separator = Some(Separator::Byte(separator));
         (self.state, self.block, self.number) = (State::Rows, Some(columns), number - 1);
-        self.header.unit = unit;
+        (self.layout.labels, self.header.unit) = (0, unit);
     }
 
     /// What is still to be refused at the end: commas or points that may be either.
     pub(super) fn unclear(&self) -> Result<(), FrameError> {
-        self.marks.open().map_or(Ok(()), |unclear| Err(thousands(&self.path, unclear)))
+        self.marks.open().map_or(Ok(()), |unclear| Err(FrameError::thousands(&self.path, unclear)))
     }
 
     /// Ends the reading of these rows.
@@ -365,11 +386,6 @@ impl Lines {
     }
 }
 
-fn thousands(path: &Path, unclear: &Unclear) -> FrameError {
-    let Unclear { place: [line, column], text, mark } = unclear.clone();
-    FrameError::Thousands { path: path.to_path_buf(), line, column, text, mark }
-}
-
 /// Reads all rows of a text, see [`Lines::row`], or blocks of rows where the shape of the file says so.
 pub(super) fn read(
     path: &Path,
@@ -379,7 +395,7 @@ pub(super) fn read(
     wrong_length: impl Fn(usize) -> Option<usize>,
 ) -> Result<Text, FrameError> {
     let mut lines = Lines::new(path, layout, target);
-    if let Some(target) = target.filter(|_| layout.first() == 0 && layout.columns.is_none())
+    if let Some(target) = target.filter(|_| layout.columns.is_none())
         && let Some(blocks) = blocks::join(path, bytes, layout, target)?
     {
         return blocks.read(lines, target, wrong_length);
@@ -389,24 +405,24 @@ pub(super) fn read(
     for line in separator::lines(bytes) {
         let Some(row) = lines.row(line, &wrong_length)? else { continue };
         let fields = lines.separator.map(|separator| separator.split(separator.trim(line))).unwrap_or_default();
-        let label = |column: usize| fields.get(column).and_then(|label| separator::number(label));
-        if let Some((column, unit)) = lines.header.time {
-            text.times.get_or_insert_default().push(label(column).map_or(f64::NAN, |time| unit * time));
-        }
-        labels.push(lines.labels() == 0 || label(0).is_some());
+        let time = lines.time(fields.get(..lines.labels()).unwrap_or_default());
+        let is_number = fields.first().is_some_and(|label| separator::number(label).is_some());
+        labels.push(lines.labels() == 0 || is_number || time.is_some());
+        text.times.push(time.unwrap_or(f64::NAN));
         text.rows.push(row);
         text.lines.push(lines.number);
     }
-    if target.is_some() && lines.heads.is_empty() && header::is_guessed(&text.rows, &labels) {
-        let first = text.rows[0].clone();
-        let is_head: Vec<bool> =
-            (0..labels.len()).map(|row| text.rows[row] == first && labels[row] == labels[0]).collect();
+    if target.is_some()
+        && lines.heads.is_empty()
+        && let Some(is_head) = header::guessed(&text.rows, &labels)
+    {
         lines.number = text.lines[0];
-        lines.numbered(first[first.len() - 1]);
-        let mut heads = is_head.iter();
-        text.rows.retain(|_| heads.next() == Some(&false));
-        let mut heads = is_head.iter();
-        text.lines.retain(|_| heads.next() == Some(&false));
+        lines.numbered(text.rows[0][text.rows[0].len() - 1]);
+        let kept = || is_head.iter().map(|is_head| !is_head);
+        let [mut of_rows, mut of_lines, mut of_times] = [kept(), kept(), kept()];
+        text.rows.retain(|_| of_rows.next() == Some(true));
+        text.lines.retain(|_| of_lines.next() == Some(true));
+        text.times.retain(|_| of_times.next() == Some(true));
     }
     lines.end(&mut text)?;
     Ok(text)

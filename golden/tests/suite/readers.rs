@@ -53,6 +53,7 @@ fn separators_of_thousands_are_asked_for() {
         "1;2;3;4;5;12,345\n1;2;3;4;5;6\n",
         "1\t2\t3\t4\t5\t1,234,567\n",
         "\"1,010\",2,3,4,5,6\n",
+        "1\t2\t3\t4\t5\t1,234\n",
         "1,010 2,020 3 4 5 6\n",
     ] {
         refused(read(text, 0), &["line 1, column", "separators of thousands", "write decimal points"]);
@@ -65,13 +66,23 @@ fn separators_of_thousands_are_asked_for() {
     assert!(lines.frame(b"1,010;2;3;4;5;6\n").is_err());
     // In blocks of rows as well.
     refused(read("1,010;2;3\n4;5;6\n", 0), &["separators of thousands"]);
-    // Points between semicolons, as in Germany.
-    for text in ["-1.226;-2.310;3;4;5;6\n", "1;2;3\n4;5;12.345\n", "1.234;0,5;3;4;5;6\n", "1.234.567;2;3;4;5;6\n"] {
+    // Points between semicolons and tabs, as in Germany.
+    for text in [
+        "-1.226;-2.310;3;4;5;6\n",
+        "1.226\t2.310\t3\t4\t5\t6\n",
+        "1;2;3\n4;5;12.345\n",
+        "1.234;0,5;3;4;5;6\n",
+        "1.234.567;2;3;4;5;6\n",
+    ] {
         refused(read(text, 0), &["line", "separators of thousands", "every point", "separate the values by commas"]);
     }
-    for text in
-        ["1.226\t2.310\t3\t4\t5\t6\n", "1.226;0.310;3;4;5;6\n", "1.226;2.3;3;4;5;6\n", "1.226;2;3;4;5;1234.567\n"]
-    {
+    for text in [
+        "1.226\t0.310\t3\t4\t5\t6\n",
+        "1.226 2.310 3\n4 5 6\n",
+        "1.226;0.310;3;4;5;6\n",
+        "1.226;2.3;3;4;5;6\n",
+        "1.226;2;3;4;5;1234.567\n",
+    ] {
         assert_eq!(read(text, 0).unwrap().frames[0][0], 1.226, "{text:?}");
     }
     let decimal = "-7,5,-1,0,0,0,2,0,-3,0,5,0\n";
@@ -290,6 +301,13 @@ fn units_above_the_frames() {
             assert!((found.frames[0][0] / -pascals - 1.0).abs() < 1e-9, "{words}{unit}: {:?}", found.frames);
         }
     }
+    for names in ["p0 (kPa),p1 (mbar),p2,p3,p4,p5", "p0 (kPa),p1,p2,p3,p4,p5", "p0,p1,p2,p3,p4,p5\nPa,kPa,Pa,Pa,Pa,Pa"]
+    {
+        refused(read(&format!("{names}\n{LINES}"), 0), &["the header names several units", "one unit"]);
+    }
+    let counts =
+        read_bytes("f.csv", format!("p0 (kPa),p1,p2,p3,p4,p5\n{LINES}").as_bytes(), &pad("pa_per_count = -1.0"), 0);
+    assert_eq!(both(counts).frames.len(), 2);
     let found = read("UNITS raw\n1,2,3\n4,5,6\n", 0).unwrap();
     assert!(found.frames[0][0] == 1.0 && found.remark.unwrap().contains("unit raw, which is no known pressure"));
 }
@@ -325,10 +343,17 @@ fn bad_frames_are_left_out_where_that_is_asked_for() {
     let found = read(&text, skip.clone()).unwrap();
     assert_eq!(found.frames, [A, B, A, B]);
     let remark = found.remark.unwrap();
-    assert!(remark.contains("2 lines are left out; the first: ") && remark.contains("line 3, column 3"), "{remark}");
-    let found = read("1 2 3\n4 5 6\n\n1 nan 3\n4 5 6\n", skip.clone()).unwrap();
-    assert!(found.frames.len() == 1 && found.remark.unwrap().contains("1 lines are left out"));
-    refused(read("1,2,nan,4,5,6\n", skip), &["1 lines are left out"]);
+    assert!(remark.contains("2 frames are left out; the first: ") && remark.contains("line 3, column 3"), "{remark}");
+    // Of blocks one with a damaged row, or of more or fewer rows, is one frame that is left out.
+    let good = "\n-7.5 -1 0\n2 -3 5\n";
+    for bad in ["1 nan 3\n4 5 6", "1 2 3", "1 2 3\n4 5 6\n7 8 9", "1 2 3\n4 5", "4 5\n1 2 3", "1 2 3\n4 x 6"] {
+        let found = read(&format!("{good}\n{bad}\n{good}"), skip.clone()).unwrap();
+        assert_eq!((found.frames, found.skipped), (vec![A.to_vec(); 2], vec![1]), "{bad:?}");
+        assert!(found.remark.unwrap().contains("1 frames are left out; the first: "), "{bad:?}");
+    }
+    let found = read(&format!("{good}{good}1 2 3\n").replace("\n\n", "\n"), skip.clone()).unwrap();
+    assert_eq!((found.frames.len(), &found.skipped[..]), (2, &[2][..]));
+    refused(read("1,2,nan,4,5,6\n", skip), &["1 frames are left out"]);
 }
 
 #[test]
@@ -358,6 +383,24 @@ fn columns_in_front_and_behind() {
         &format!("time,r0c0,r0c1,r0c2,r1c0,r1c1,r1c2\n{}", LINES.replace("-7.5", "0,-7.5").replace("-8", "1,-8")),
         0,
     ));
+}
+
+#[test]
+fn time_stamps_are_times() {
+    let [a, b] = ["-7.5,-1,0,2,-3,5", "-8,-2,1,0.5,-4,6"];
+    let names = "p0,p1,p2,p3,p4,p5";
+    let second = "2026-03-01T12:00:00.250";
+    for (text, labels) in [
+        (format!("time,{names}\n2026-03-01T12:00:00.125,{a}\n{second},{b}\n"), 0),
+        (format!("when,{names}\n2026-03-01 13:00:00.125+01:00,{a}\n{second}Z,{b}\n"), 0),
+        (format!("2026-03-01T12:00:00.125,{a}\n{second},{b}\n"), 1),
+        (format!("7 2026-03-01 12:00:00.125 {a}\n8 {} {b}\n", second.replace('T', " ")).replace(',', " "), 3),
+    ] {
+        let times = both(read(&text, labels)).times.expect("times");
+        assert_eq!(times, [1_772_366_400.125, 1_772_366_400.25], "{text}");
+    }
+    // Not of a line alone that has none.
+    assert_eq!(both(read(&format!("2026-03-01T12:00:00.125,{a}\nlater,{b}\n"), 1)).times, None);
 }
 
 #[test]
@@ -392,6 +435,26 @@ fn frames_as_blocks_of_rows() {
     assert_eq!((found.frames.len(), found.frames[1][0]), (2, 6.0));
     assert!(found.remark.unwrap().contains("below numbers of the columns"));
     assert_eq!(read_bytes("f.csv", b"0,1,2,3\n4,5,6,7\n", &wide, 0).unwrap().frames[0][1], 1.0);
+    // Labels of the rows.
+    let labels = "behind labels of the rows";
+    let read_both = |text: &str, layout: usize| {
+        let found = read(text, layout).unwrap();
+        assert!(found.frames == [A, B] && found.remark.unwrap().contains(labels), "{text:?}, {layout}");
+    };
+    for text in [
+        "\"\",a,b,c\n0,-7.5,-1,0\n1,2,-3,5\n\"\",a,b,c\n0,-8,-2,1\n1,0.5,-4,6\n",
+        ",0,1,2\n1,-7.5,-1,0\n2,2,-3,5\n1,-8,-2,1\n2,0.5,-4,6\n",
+        "top -7.5 -1 0\nend 2 -3 5\n\ntop -8 -2 1\nend 0.5 -4 6\n",
+    ] {
+        for layout in [0, 1] {
+            read_both(text, layout);
+        }
+    }
+    let rows = "y,0,1,2,3\n0,5,6,7,8\n1,1,1,1,1\n";
+    let found = read_bytes("f.csv", format!("{rows}{rows}").as_bytes(), &wide, 0).unwrap();
+    assert!(found.frames == [[5.0, 6.0, 7.0, 8.0, 1.0, 1.0, 1.0, 1.0]; 2] && found.remark.unwrap().contains(labels));
+    // Numbers of another sensor's columns are none.
+    refused(read("7.5,1,2,3\n8,4,5,6\n", 0), &["line 1"]);
     let skip = Layout { skip_lines: 2, ..Layout::default() };
     assert_eq!(read("1 2 3\n9 9 9\n1 2 3\n4 5 6\n", skip.clone()).unwrap().frames, [[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]]);
     assert_eq!(read(&format!("1,2,3\nanything: 5\n{LINES}"), skip).unwrap().frames, [A, B]);
@@ -407,6 +470,10 @@ fn headers_as_programs_write_them() {
     let quoted = "\"-7,5\",\"-1,0\",0,2,\"-3,0\",5\n-8,-2,1,\"0,5\",-4,6\n";
     both(read(quoted, 0));
     both(read("-7,5 -1 0 2 -3 5\n-8 -2 1 0,5 -4 6\n", 0));
+    for bytes in [u16::to_le_bytes, u16::to_be_bytes] {
+        let text: Vec<u8> = format!("\u{feff}{LINES}").encode_utf16().flat_map(bytes).collect();
+        both(read_bytes("frames.csv", &text, &pad(""), 0));
+    }
     let again = read(&format!("p0,p1,p2,p3,p4,p5\n{LINES}p0,p1,p2,p3,p4,p5\n{LINES}"), 0).unwrap();
     assert_eq!(again.frames, [A, B, A, B]);
     assert!(again.remark.unwrap().contains("line 4: the header again"));
@@ -425,6 +492,7 @@ fn other_formats_are_named() {
         (b"\xfd7zXZ\0\0", ["xz", "unxz"]),
         (b"\x28\xb5\x2f\xfd\x04", ["Zstandard", "unzstd"]),
         (b"{\"t\": 0, \"p\": [1, 2]}\n", ["JSON", "jq"]),
+        (b"P:1,2,3,4,5,6\n", ["line 1, column 1", "sed 's/[^,]*://g'"]),
         (b"12:00:01.123 -> 1,2,3,4,5,6\n", ["serial monitor", "timestamps off"]),
     ] {
         refused(read_bytes("file", bytes, &pad(""), 0), &parts);

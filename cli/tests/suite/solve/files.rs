@@ -179,7 +179,6 @@ fn files_of_other_programs_get_a_word_of_what_to_do() {
         (b"\x89HDF\r\n\x1a\n", "HDF5"),
         (b"MATLAB 5.0 MAT-file", "writematrix"),
         (b"\x1f\x8b\x08", "gunzip"),
-        (b"\xff\xfe1\x00", "UTF-8"),
     ] {
         let (_folder, file) = folder_with("");
         fs::write(&file, begin).unwrap();

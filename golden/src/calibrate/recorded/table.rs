@@ -7,8 +7,9 @@ use std::path::Path;
 
 use super::RecordedError;
 use super::columns::{Meaning, meanings};
-use crate::frames::{Array, Frames, read_array};
-use crate::separator::{self, Marks, Separator, Unclear, is_unknown};
+use crate::frames::{Array, Content, FrameError, Frames, content};
+use crate::separator::{self, Marks, Separator, is_unknown};
+use crate::units::timestamp;
 
 /// Frames and forces must have this share of the frames' time in common.
 const COMMON: f64 = 0.5;
@@ -125,7 +126,7 @@ struct Raw {
 ///
 /// # Errors
 ///
-/// [`RecordedError::File`] for a file that cannot be read, a column nobody can tell, and a value that is no number.
+/// [`RecordedError`] for a file that cannot be read, a column nobody can tell, and a value that is no number.
 pub fn read_forces(path: &Path) -> Result<Measured, RecordedError> {
     read(path, "F_x,F_y,F_z", &|count, rising| match (count, rising) {
         (1, _) => Some(vec![Some(Meaning::Force(2))]),
@@ -193,6 +194,9 @@ fn read(path: &Path, example: &str, guess: &Guess) -> Result<Measured, RecordedE
         };
         let at = named.iter().position(Option::is_some).unwrap_or(0) + 1;
         remarks.push(format!("no header names the columns: from column {at} on they are taken for {what}"));
+        if timestamp(&raw.rows[0].1[0]).is_some() {
+            named[0] = Some((Meaning::Time, 1.0));
+        }
     }
     let contact = named.iter().position(|column| matches!(column, Some((Meaning::Contact, _))));
     let mut measured = Measured { remarks, ..Measured::default() };
@@ -208,18 +212,19 @@ fn read(path: &Path, example: &str, guess: &Guess) -> Result<Measured, RecordedE
             }
             // What is no number at all is refused below.
             let _ = marks.take(text.as_bytes(), raw.separator, [*line, column + 1]);
-            let value =
-                text.replace(',', ".").parse::<f64>().ok().filter(|value| value.is_finite()).ok_or_else(|| {
-                    let shown: String = text.chars().take(40).collect();
-                    wrong(
-                        format!("line {line}, column {}: {shown:?} is no number", column + 1),
-                        "leave blank what is unknown".to_owned(),
-                    )
-                })?;
+            let number = separator::number(text.as_bytes()).filter(|value| value.is_finite()).map(|value| unit * value);
+            let stamp = || timestamp(text).filter(|_| meaning == Meaning::Time);
+            let value = number.or_else(stamp).ok_or_else(|| FrameError::Value {
+                path: path.to_path_buf(),
+                line: *line,
+                column: column + 1,
+                text: text.chars().take(40).collect(),
+                remedy: "leave blank what is unknown".to_owned(),
+            })?;
             match meaning {
-                Meaning::Force(axis) => force[axis] = Some(unit * value),
-                Meaning::Pressure => pressure = Some(unit * value),
-                Meaning::Time => time = unit * value,
+                Meaning::Force(axis) => force[axis] = Some(value),
+                Meaning::Pressure => pressure = Some(value),
+                Meaning::Time => time = value,
                 Meaning::Contact => {}
             }
         }
@@ -228,14 +233,8 @@ fn read(path: &Path, example: &str, guess: &Guess) -> Result<Measured, RecordedE
         measured.pressures.push(pressure);
         contacts.extend(contact.map(|column| fields.get(column).cloned().unwrap_or_default()));
     }
-    if let Some(Unclear { place: [line, column], text, mark }) = marks.open() {
-        return Err(wrong(
-            format!(
-                "line {line}, column {column}: \"{text}\" has a decimal {mark} or a separator of thousands, and three digits \
-                 follow every {mark}"
-            ),
-            "write decimal points between commas, or remove the separators".to_owned(),
-        ));
+    if let Some(unclear) = marks.open() {
+        return Err(FrameError::thousands(path, unclear).into());
     }
     measured.contacts = contact.map(|_| contacts);
     measured.times = times.iter().all(|time| time.is_finite()).then_some(times).filter(|times| !times.is_empty());
@@ -244,29 +243,25 @@ fn read(path: &Path, example: &str, guess: &Guess) -> Result<Measured, RecordedE
 
 /// Whether the first column counts or tells the time.
 fn rises(raw: &Raw) -> bool {
-    let first: Vec<f64> =
-        raw.rows.iter().filter_map(|(_, fields)| fields.first()?.replace(',', ".").parse().ok()).collect();
+    let value = |text: &String| separator::number(text.as_bytes()).or_else(|| timestamp(text));
+    let first: Vec<f64> = raw.rows.iter().filter_map(|(_, fields)| value(fields.first()?)).collect();
     first.len() == raw.rows.len() && first.len() > 1 && first.windows(2).all(|pair| pair[1] > pair[0])
 }
 
 fn raw(path: &Path) -> Result<Raw, RecordedError> {
-    let wrong = |problem: String| RecordedError::File {
-        path: path.to_path_buf(),
-        problem,
-        remedy: "check the path and the permissions".to_owned(),
+    let bytes = match content(path)? {
+        Content::Text(bytes) => bytes,
+        Content::Array(Array { shape, values }) => {
+            let columns = shape.get(1..).unwrap_or(&[]).iter().product::<usize>().max(1);
+            let text = |value: &f64| if value.is_nan() { String::new() } else { format!("{value:?}") };
+            let rows = values.chunks(columns).enumerate();
+            let rows = rows.map(|(row, values)| (row + 1, values.iter().map(text).collect())).collect();
+            return Ok(Raw { names: None, units: None, rows, separator: Separator::Spaces });
+        }
     };
-    if let Some(Array { shape, values }) = read_array(path).map_err(|error| wrong(error.to_string()))? {
-        let columns = shape.get(1..).unwrap_or(&[]).iter().product::<usize>().max(1);
-        let text = |value: &f64| if value.is_nan() { String::new() } else { format!("{value:?}") };
-        let rows = values.chunks(columns).enumerate();
-        let rows = rows.map(|(row, values)| (row + 1, values.iter().map(text).collect())).collect();
-        return Ok(Raw { names: None, units: None, rows, separator: Separator::Spaces });
-    }
-    let bytes = std::fs::read(path).map_err(|error| wrong(format!("cannot be read: {error}")))?;
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
     let (mut heads, mut comments, mut rows) = (Vec::new(), Vec::new(), Vec::new());
     let mut separator = None;
-    for (index, line) in separator::lines(bytes).enumerate() {
+    for (index, line) in separator::lines(&bytes).enumerate() {
         let content = line.trim_ascii();
         if content.is_empty() {
             // A file of one column may leave a line blank: the force is unknown.

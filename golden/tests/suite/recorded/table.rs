@@ -43,6 +43,11 @@ fn columns_units_and_blanks() {
     assert!(found.remarks.iter().any(|line| line.contains("not used") && line.contains("operator")));
     let found = forces("time (ms),F_z\n0,1\n1500,2\n").unwrap();
     assert_eq!(found.times, Some(vec![0.0, 1.5]));
+    for names in ["timestamp,F_z\n", ""] {
+        let found = forces(&format!("{names}2026-03-01 12:00:00Z,1\n2026-03-01T12:00:01.5,2\n")).unwrap();
+        assert_eq!(found.times, Some(vec![1_772_366_400.0, 1_772_366_401.5]));
+        assert_eq!(found.forces, z(&[Some(1.0), Some(2.0)]));
+    }
     assert!(forces("3\n").unwrap().remarks.iter().any(|line| line.contains("taken for F_z in newtons")));
 }
 
@@ -55,8 +60,8 @@ fn what_nobody_can_tell_is_refused() {
         ("mass\n5\n", ["\"mass\" has no unit", "name the unit", "kg"]),
         ("F_z (stone)\n5\n", ["\"stone\" is no unit of a force", "name the unit", "mN"]),
         ("F_z (kPa)\n5\n", ["\"kpa\" is no unit of a force", "name the unit", "mN"]),
-        ("F_z\n5\nheavy\n", ["line 3, column 1", "\"heavy\" is no number", "leave blank"]),
-        ("F_z\n\"1,010\"\n\"2,500\"\n", ["line 2, column 1", "separator of thousands", "write decimal points"]),
+        ("F_z\n5\nheavy\n", ["line 3, column 1", "\"heavy\" is no finite", "leave blank"]),
+        ("F_z\n\"1,010\"\n\"2,500\"\n", ["line 2, column 1", "separators of thousands", "write decimal points"]),
         ("F_z,load\n5,5\n", ["2 columns are the force along z", "name", "unit"]),
     ] {
         let said = forces(text).unwrap_err();
