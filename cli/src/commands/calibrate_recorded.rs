@@ -130,8 +130,8 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
     let (mut design, mut results) = fitted;
     if let Some(found) = results.iter_mut().flatten().last().filter(|_| !settled) {
         found.remarks.push(format!(
-            "creep and what counts mean still change after {ROUNDS} rounds of fits: record the constant load for longer, \
-             unloaded before it"
+            "creep and what counts mean still change after {ROUNDS} rounds of fits: calibrate {} again with these recordings",
+            out.display()
         ));
     }
     // As the design reads them now: sign, unit and tare are what was fitted. A bladder loads every taxel.
