@@ -178,7 +178,7 @@ fn crosstalk_of_small_grids() {
                 invented += usize::from(is.is_some());
             }
             for (share, noise) in [(0.01, 0.01), (0.02, 0.01), (0.05, 0.0)] {
-                let reads = |share: f64| 1.0 + share * (columns + rows) as f64;
+                let reads = |share: f64| 1.0 + share * f64::from(columns + rows);
                 if let Some(is) = share_of(share, noise, &mut random) {
                     found += 1;
                     worst = worst.max(100.0 * (reads(share) / reads(is) - 1.0).abs());
