@@ -56,10 +56,15 @@ impl Crosstalk {
         self.combine(frame, self.factors());
     }
 
+    /// Sums of the rows and of the columns of a frame.
+    pub(crate) fn sums(&self, frame: &[f64]) -> [Vec<f64>; 2] {
+        let rows = frame.chunks(self.columns).map(|row| row.iter().sum());
+        let columns = (0..self.columns).map(|column| frame.iter().skip(column).step_by(self.columns).sum());
+        [rows.collect(), columns.collect()]
+    }
+
     fn combine(&self, frame: &mut [f64], factors: Factors) {
-        let rows: Vec<f64> = frame.chunks(self.columns).map(|row| row.iter().sum()).collect();
-        let columns: Vec<f64> =
-            (0..self.columns).map(|column| frame.iter().skip(column).step_by(self.columns).sum()).collect();
+        let [rows, columns] = self.sums(frame);
         let total = factors.total * rows.iter().sum::<f64>();
         for (values, row) in frame.chunks_mut(self.columns).zip(rows) {
             for (value, column) in values.iter_mut().zip(&columns) {

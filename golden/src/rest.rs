@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 
-use crate::check::unit::Scale;
 use crate::check::{holds, together};
 use crate::dead_taxels::MOST_DEAD;
 use crate::design::{Calibration, Design};
@@ -54,9 +53,9 @@ pub enum RestError {
     /// Frames of contacts with less load than those without.
     #[error(
         "{0} of {1} frames read less load than the unloaded ones: did something press while those were recorded? Record them \
-         anew; if nothing did, change {2}"
+         anew; if nothing did, the sign is wrong: compression must be negative"
     )]
-    LessLoad(usize, usize, &'static str),
+    LessLoad(usize, usize),
 }
 
 /// What one taxel reads at rest, in the units of the file.
@@ -217,7 +216,7 @@ impl AtRest {
         let [pull, all] =
             [of_contacts().filter(|frame| frame.iter().sum::<f64>() > 0.0).count(), of_contacts().count()];
         if holds(pull, all) {
-            return Err(RestError::LessLoad(pull, all, Scale::of(design).sign));
+            return Err(RestError::LessLoad(pull, all));
         }
         Ok(self.noise_pa / typical)
     }

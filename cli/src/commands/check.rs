@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use golden::check::{Beyond, beyond, check, is_unloaded};
+use golden::check::{Beyond, Finding, beyond, check, is_unloaded};
 use golden::design::Design;
 use golden::matrices::Matrices;
 use golden::progress::Progress;
@@ -51,14 +51,8 @@ pub struct Args {
 struct Report<'a> {
     design: &'a str,
     frames: usize,
-    findings: Vec<Line>,
+    findings: &'a [Finding],
     beyond: Beyond,
-}
-
-#[derive(Serialize)]
-struct Line {
-    kind: String,
-    message: String,
 }
 
 /// Checks the frames of a file; an error if anything is found.
@@ -85,9 +79,7 @@ pub fn run(args: &Args) -> message::Result {
     let file = recording.file.display();
     let mut text = String::new();
     if *json {
-        let line = |kind: String, message: String| Line { kind, message };
-        let findings = findings.iter().map(|found| line(found.kind.to_string(), found.to_string())).collect();
-        let report = Report { design: &design.name, frames: frames.len(), findings, beyond };
+        let report = Report { design: &design.name, frames: frames.len(), findings: &findings, beyond };
         text += &(serde_json::to_string_pretty(&report)? + "\n");
     } else {
         for finding in &findings {

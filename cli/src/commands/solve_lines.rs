@@ -1,13 +1,13 @@
 //! `sptfra solve --out -`: forces line by line, each as soon as its frame is there.
 
 use std::error::Error;
-use std::io::{self, Write};
+use std::io::{self, BufRead, Write};
 use std::path::Path;
 
 use golden::check::check;
 use golden::design::Design;
 use golden::forces;
-use golden::frames::{FrameError, FrameLines, FrameStream};
+use golden::frames::{FrameError, FrameLines};
 use golden::solver::{Solution, Solver, Status};
 
 use super::recording::{Recording, is_standard, warn};
@@ -20,16 +20,24 @@ const LOOKED_AT: usize = 32;
 pub fn run(design: &Path, frames: &Recording, with_field: bool) -> Result<(), Box<dyn Error>> {
     let design = Design::load(design)?;
     let solver = Solver::new(&design)?;
-    let lines = FrameLines::new(Path::new("standard input"), &design, frames.layout.clone());
-    let mut stream = FrameStream::new(io::stdin().lock(), lines);
-    let mut said = false;
+    let origin = Path::new("standard input");
+    let mut lines = FrameLines::new(origin, &design, frames.layout.clone());
+    let (mut input, mut line, mut said) = (io::stdin().lock(), Vec::new(), false);
     let mut next: Box<dyn FnMut() -> Result<Option<Vec<f64>>, FrameError>> = if is_standard(frames.file) {
         Box::new(move || {
-            let frame = stream.next_frame();
-            if let Some(remark) = stream.remark().filter(|_| !std::mem::replace(&mut said, true)) {
-                eprintln!("note: {remark}");
+            loop {
+                line.clear();
+                let read = input.read_until(b'\n', &mut line);
+                let is_end = read.map_err(|source| FrameError::Read { path: origin.to_path_buf(), source })? == 0;
+                let frame = if is_end { Ok(None) } else { lines.frame(&line) };
+                if !is_end && matches!(frame, Ok(None)) {
+                    continue;
+                }
+                if let Some(remark) = lines.remark().filter(|_| !std::mem::replace(&mut said, true)) {
+                    eprintln!("note: {remark}");
+                }
+                return frame;
             }
-            frame
         })
     } else {
         let all = frames.read(&design)?;

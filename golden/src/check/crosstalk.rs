@@ -7,7 +7,6 @@ use super::{LOADED, count, largest};
 use crate::crosstalk::Crosstalk;
 use crate::design::Design;
 use crate::numbers::middle;
-use crate::sensor::Sensor;
 
 /// Fewer frames show none.
 const FRAMES: usize = 3;
@@ -110,20 +109,13 @@ fn estimate(design: &Design, stress: &[f64]) -> Option<Estimate> {
     let near = radius + 1e-3 * sensor.depth_mm;
     let is_live = |taxel: &usize| !design.input.dead.contains(taxel);
     let far: Vec<usize> = (0..stress.len()).filter(|&taxel| distance(taxel) >= near).filter(is_live).collect();
-    let (columns, place) = (sensor.columns, |taxel: usize| [taxel % sensor.columns, taxel / sensor.columns]);
-    let crossed = |axis: usize| -> Vec<bool> {
-        let mut crossed = vec![false; columns.max(sensor.rows)];
-        for &taxel in &touched {
-            crossed[place(taxel)[axis]] = true;
-        }
-        crossed
-    };
-    let [in_column, in_row] = [crossed(0), crossed(1)];
-    let arms = [
-        far.iter().filter(|&&taxel| in_row[place(taxel)[1]]).count(),
-        far.iter().filter(|&&taxel| in_column[place(taxel)[0]]).count(),
-    ];
-    let beside = far.iter().filter(|&&taxel| !in_row[place(taxel)[1]] && !in_column[place(taxel)[0]]).count();
+    let place = |taxel: usize| [taxel % sensor.columns, taxel / sensor.columns];
+    // Whether the contact is in the taxel's column, and in its row.
+    let crosses =
+        |taxel: usize| [0, 1].map(|axis| touched.iter().any(|&other| place(other)[axis] == place(taxel)[axis]));
+    let count = |of: &dyn Fn([bool; 2]) -> bool| far.iter().filter(|&&taxel| of(crosses(taxel))).count();
+    let arms = [count(&|[_, row]| row), count(&|[column, _]| column)];
+    let beside = count(&|crosses| crosses == [false; 2]);
     // Without a corner that has neither, a cross is no cross.
     if arms.iter().all(|&arm| arm < 2 * ARM) || beside < ARM {
         return None;
@@ -139,32 +131,17 @@ fn estimate(design: &Design, stress: &[f64]) -> Option<Estimate> {
     let mut share = 0.0;
     let mut result = None;
     for _ in 0..ROUNDS {
-        let mut undone = stress.to_vec();
-        Crosstalk::new(sensor, share).remove(&mut undone);
-        let [rows, sums] = [sums_of_rows(sensor, &undone), sums_of_columns(sensor, &undone)];
-        let of = |taxel: usize| [rows[place(taxel)[1]], sums[place(taxel)[0]]];
-        let (fitted, deviation) = fit(&read, &far, |taxel| {
-            let [row, column] = of(taxel);
-            let [one, decay, x, y] = tails(taxel);
-            vec![row + column, one, decay, x, y]
-        })?;
-        let (each, _) = fit(&read, &far, |taxel| {
-            let [row, column] = of(taxel);
-            let [one, decay, x, y] = tails(taxel);
-            vec![row, column, one, decay, x, y]
-        })?;
+        let (crosstalk, mut undone) = (Crosstalk::new(sensor, share), stress.to_vec());
+        crosstalk.remove(&mut undone);
+        let [rows, columns] = crosstalk.sums(&undone);
+        let sums = |taxel: usize| [rows[place(taxel)[1]], columns[place(taxel)[0]]];
+        let both_alike = |taxel: usize| [&[sums(taxel).iter().sum()], &tails(taxel)[..]].concat();
+        let (fitted, error) = fit(&read, &far, both_alike)?;
+        let (each, _) = fit(&read, &far, |taxel| [&sums(taxel)[..], &tails(taxel)].concat())?;
         share = fitted[0].clamp(0.0, 0.2);
-        result = Some(Estimate { share: fitted[0], each: both.then(|| [each[0], each[1]]), error: deviation });
+        result = Some(Estimate { share: fitted[0], each: both.then(|| [each[0], each[1]]), error });
     }
     result
-}
-
-fn sums_of_rows(sensor: &Sensor, stress: &[f64]) -> Vec<f64> {
-    stress.chunks(sensor.columns).map(|row| row.iter().sum()).collect()
-}
-
-fn sums_of_columns(sensor: &Sensor, stress: &[f64]) -> Vec<f64> {
-    (0..sensor.columns).map(|column| stress.iter().skip(column).step_by(sensor.columns).sum()).collect()
 }
 
 /// Least squares of readings at some taxels: factors of the terms, and the standard error of the first.

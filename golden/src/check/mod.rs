@@ -14,7 +14,7 @@ mod print;
 mod quiet;
 mod rest;
 mod scaled;
-pub(crate) mod unit;
+mod unit;
 
 use std::fmt;
 
@@ -63,7 +63,7 @@ pub enum Kind {
 print_as_words!(Kind);
 
 /// One thing that is suspicious, with its likely cause and what to change, on one line.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Finding {
     /// What it is about.
     pub kind: Kind,

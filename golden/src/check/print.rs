@@ -1,6 +1,5 @@
 //! What a tare under load leaves: the negative print of the contact that lay on the sensor.
 
-use super::unit::Scale;
 use super::{LOADED, PULLS_TOGETHER, largest, together};
 use crate::design::Design;
 
@@ -42,10 +41,9 @@ pub(super) fn check(design: &Design, stress: &[Vec<f64>]) -> Option<String> {
     (is_contact && (ends == 2 || ends == 1 && prints > near_zero)).then(|| {
         format!(
             "the unloaded frames are more loaded than others: {prints} frames{} have the pull of one contact, and frame {} has \
-             the least. Was the sensor tared under a load? Tare it without. If a contact did lie on it then, compression must be negative: change {}",
+             the least. Was the sensor tared under a load? Tare it without. If a contact did lie on it then, the sign is wrong: compression must be negative",
             if ends == 2 { ", the first and the last," } else { "" },
-            nearest + 1,
-            Scale::of(design).sign
+            nearest + 1
         )
     })
 }

@@ -9,17 +9,17 @@ const TOO_SMALL: f64 = 1000.0;
 pub(super) const TOO_LARGE: f64 = 10.0;
 
 /// What says how many pascals a count is.
-pub(crate) struct Scale {
+pub(super) struct Scale {
     /// The key.
     pub(super) key: &'static str,
     /// What is to be changed for another size,
     size: &'static str,
     /// and for the other sign.
-    pub(crate) sign: &'static str,
+    pub(super) sign: &'static str,
 }
 
 impl Scale {
-    pub(crate) fn of(design: &Design) -> Self {
+    pub(super) fn of(design: &Design) -> Self {
         let [key, size, sign] = match &design.input.curve {
             Some(Curve { law: Some(_), .. }) => {
                 ["sensor.curve", "sensor.curve.scale", "the sign of sensor.curve.scale"]

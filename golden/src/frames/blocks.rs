@@ -132,7 +132,7 @@ pub(super) fn join<'a>(
                 } else {
                     format!(
                         "a block of {found} rows ends here where the sensor has {rows}; skip lines above the first frame \
-                         with --skip-lines N"
+                         with --skip-lines N, or leave such frames out with --skip-bad"
                     )
                 };
                 // A row too many is that of a single block.

@@ -9,7 +9,8 @@ pub(super) fn value(target: Option<&Target>, layout: &Layout, text: &str) -> Str
         let skip = if layout.skip_bad { "" } else { ", or leave such frames out with --skip-bad" };
         return format!("name a taxel that is dead in sensor.dead{skip}");
     }
-    if text.rsplit_once(':').is_some_and(|(_, value)| separator::number(value.trim().as_bytes()).is_some()) {
+    let behind = text.rsplit_once(':').filter(|_| text.starts_with(char::is_alphabetic));
+    if behind.is_some_and(|(_, value)| separator::number(value.trim().as_bytes()).is_some()) {
         return "cut the names before the values: sed 's/[^,]*://g'".to_owned();
     }
     let counts = target.is_some_and(|target| target.counts);

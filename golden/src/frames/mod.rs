@@ -23,7 +23,7 @@ use std::path::Path;
 pub use error::FrameError;
 pub use layout::Layout;
 use layout::Target;
-pub use stream::{FrameLines, FrameStream};
+pub use stream::FrameLines;
 use text::{BYTE_ORDER_MARK, Text};
 
 use crate::design::Design;

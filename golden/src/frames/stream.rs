@@ -1,6 +1,5 @@
 //! Frames of a design that come line by line, as from a sensor.
 
-use std::io::BufRead;
 use std::path::Path;
 
 use super::FrameError;
@@ -49,43 +48,5 @@ impl FrameLines {
         let place = format!("line {}, column {}", self.lines.number(), self.lines.column(column));
         let path = self.lines.path().to_path_buf();
         Err(FrameError::Sample { path, place, value: frame[column], samples: self.samples })
-    }
-}
-
-/// Frames from text that is still being written: each is there as soon as its line is.
-pub struct FrameStream<R> {
-    input: R,
-    lines: FrameLines,
-    line: Vec<u8>,
-}
-
-impl<R: BufRead> FrameStream<R> {
-    /// Frames of `input`.
-    pub fn new(input: R, lines: FrameLines) -> Self {
-        Self { input, lines, line: Vec::new() }
-    }
-
-    /// As [`FrameLines::remark`].
-    pub fn remark(&self) -> Option<String> {
-        self.lines.remark()
-    }
-
-    /// Waits for the next frame; `None` at the end.
-    ///
-    /// # Errors
-    ///
-    /// As [`FrameLines::frame`], and [`FrameError::Read`].
-    pub fn next_frame(&mut self) -> Result<Option<Vec<f64>>, FrameError> {
-        loop {
-            self.line.clear();
-            let read = self.input.read_until(b'\n', &mut self.line);
-            let path = self.lines.lines.path();
-            if read.map_err(|source| FrameError::Read { path: path.to_path_buf(), source })? == 0 {
-                return Ok(None);
-            }
-            if let Some(frame) = self.lines.frame(&self.line)? {
-                return Ok(Some(frame));
-            }
-        }
     }
 }

@@ -399,6 +399,7 @@ fn time_stamps_are_times() {
         let times = both(read(&text, labels)).times.expect("times");
         assert_eq!(times, [1_772_366_400.125, 1_772_366_400.25], "{text}");
     }
+    refused(read(&format!("2026-03-01T12:00:00.125,{a}\n"), 0), &["line 1, column 1", "need --labels"]);
     // Not of a line alone that has none.
     assert_eq!(both(read(&format!("2026-03-01T12:00:00.125,{a}\nlater,{b}\n"), 1)).times, None);
 }
