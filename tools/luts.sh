@@ -12,7 +12,7 @@ work=$target/luts
 cd "$work"
 name=$(sed -n 's/^name = "\(.*\)"/\1/p' core/design.toml)
 cut=
-for module in spmv_array 'estimator_*' op we co unfold field coefficient_field cean turns frame_context axis_skid; do
+for module in spmv_array 'estimator_*' op we co unfold field coefficient_field cean program_scheduler frame_context axis_skid; do
     cut="$cut */t:*sptfra_$module"
 done
 # These are counted one by one, with what they instantiate.

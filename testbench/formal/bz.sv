@@ -53,11 +53,11 @@ module harness (
     wire ended;
     wire flags_sent;
     wire folded;
-    wire [ROW_BITS-1:0] quad;
+    wire [ROW_BITS-1:0] orbit;
     wire [4:1] fold_valid;
     wire [4:1] fold_lasts;
     wire [4*ROW_BITS-1:0] fold_rows;
-    wire fold_turn;
+    wire fold_read;
     wire frame_written;
 
     sptfra_bz subject (
@@ -98,8 +98,8 @@ module harness (
         .\writer.ended (ended),
         .\writer.flags_sent (flags_sent),
         .\writer.fold.done (folded),
-        .\writer.fold.turn (fold_turn),
-        .\writer.fold.quad (quad),
+        .\writer.fold.read (fold_read),
+        .\writer.fold.orbit (orbit),
         .\writer.fold.valid (fold_valid),
         .\writer.fold.lasts (fold_lasts),
         .\writer.fold.rows (fold_rows),
@@ -184,7 +184,7 @@ module harness (
     wire writes = write_valid && write_ready;
     reg bank_out; // of the frame that is written
     reg [3:0] element; // of it that is written next
-    reg [3:0] turned; // elements of the frame inside that had their turn
+    reg [3:0] elements_read; // elements of the frame inside that were read
     reg kept; // a whole frame is inside
     reg nothing_missing; // for a new frame, a cycle ago
     wire last_element = (element == ELEMENTS - 4'd1);
@@ -195,13 +195,13 @@ module harness (
         nothing_missing <= !taken && cean_idle && direction_room && (frames_inside != 3'd2) && (there == 5'd0) && !kept;
         bank_out <= bank_out ^ (writes && last_element);
         element <= !writes ? element : last_element ? 4'd0 : element + 4'd1;
-        turned <= (kept && (turned == ELEMENTS)) ? 4'd0 : turned + {3'd0, fold_turn};
-        kept <= frame_done || (kept && (turned != ELEMENTS));
+        elements_read <= (kept && (elements_read == ELEMENTS)) ? 4'd0 : elements_read + {3'd0, fold_read};
+        kept <= frame_done || (kept && (elements_read != ELEMENTS));
         if (reset) begin
             nothing_missing <= 1'b1;
             bank_out <= 1'b0;
             element <= 4'd0;
-            turned <= 4'd0;
+            elements_read <= 4'd0;
             kept <= 1'b0;
         end
     end
@@ -227,7 +227,7 @@ module harness (
             assert (frame_written == (writes && last_element));
             // Whoever waits is served: nothing stands still but for want of a bank, of CeAn or of the memories' port
             assert (s_tready || (!in_frame && !nothing_missing));
-            assert (!kept || (turned == ELEMENTS) || (fold_turn == write_ready));
+            assert (!kept || (elements_read == ELEMENTS) || (fold_read == write_ready));
         end
     end
 
@@ -252,13 +252,13 @@ module harness (
             assert (valid == there);
             assert (write_bank == bank_out);
             assert (element < ELEMENTS);
-            assert (turned <= ELEMENTS);
+            assert (elements_read <= ELEMENTS);
             assert (ended == kept);
             assert (flags_sent == ended);
-            assert (folded == (turned == ELEMENTS));
-            assert (folded || (quad == ELEMENTS[ROW_BITS-1:0] - 1'b1 - turned[ROW_BITS-1:0]));
+            assert (folded == (elements_read == ELEMENTS));
+            assert (folded || (orbit == ELEMENTS[ROW_BITS-1:0] - 1'b1 - elements_read[ROW_BITS-1:0]));
             assert (!folded || kept);
-            assert (((turned == ELEMENTS) ? 4'd0 : turned) == row_0);
+            assert (((elements_read == ELEMENTS) ? 4'd0 : elements_read) == row_0);
             assert (!kept || (there == 5'd0));
             assert (!kept || !in_frame);
             assert (!may_open || ((there == 5'd0) && !kept));

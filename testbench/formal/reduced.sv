@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// The frame handshake of the reduced plan: turns, Op and output, with up to four frames between them.
+// The frame handshake of the reduced plan: program scheduler, Op and output, with up to four frames between them.
 //
 // The generated top level with its control logic. Left out, and free to do anything in any cycle: the skid buffers,
 // Bz, CeAn, the arithmetic, and how long programs, search and summary take. The sink may stall for ever. With JOINT the
@@ -33,7 +33,7 @@ module harness (
     wire friction_known;
     wire search_over;
     wire [2:0] issuing;
-    wire turns_busy;
+    wire scheduler_busy;
     wire residual_due;
     wire residual_written;
     wire [1:0] residuals_there;
@@ -118,16 +118,16 @@ module harness (
         .answer_take (search_over),
         .u_released (u_released),
         .\spmv_array.issuing_now (issuing),
-        .\turns.busy (turns_busy),
-        .\turns.gen_field.residual_due (residual_due),
-        .\turns.residual_written (residual_written),
-        .\turns.gen_field.residuals_there (residuals_there),
-        .\turns.gen_field.fields_due (fields_due),
+        .\scheduler.busy (scheduler_busy),
+        .\scheduler.gen_field.residual_due (residual_due),
+        .\scheduler.residual_written (residual_written),
+        .\scheduler.gen_field.residuals_there (residuals_there),
+        .\scheduler.gen_field.fields_due (fields_due),
         .residual_bank (residual_bank),
         .field_bank (field_bank),
-        .\turns.u_held (u_held),
-        .\turns.frames_held (frames_held),
-        .\turns.gen_field.fields_held (fields_held),
+        .\scheduler.u_held (u_held),
+        .\scheduler.frames_held (frames_held),
+        .\scheduler.gen_field.fields_held (fields_held),
         .\estimator.search_start (search_start),
         .\estimator.search_done (search_done),
         .\op.summary_busy (summary_busy),
@@ -317,7 +317,7 @@ module harness (
             assert (line_state <= 3'd4);
             assert (!summed || open[0]);
             // The lanes
-            assert (turns_busy == ((start != 3'd0) || (issuing != 3'd0)));
+            assert (scheduler_busy == ((start != 3'd0) || (issuing != 3'd0)));
             assert ((issuing == 3'd0) || (issuing == last));
             assert ((last & (last - 3'd1)) == 3'd0);
             assert ((open & ~(last | ((issuing != 3'd0) ? before : 3'd0))) == 3'd0);
@@ -361,7 +361,7 @@ module harness (
 `endif
 
     // ---- Progress: what is left to do for the frames inside
-    wire [9:0] left_of_turns = (residual_due ? 10'd30 : 10'd0)
+    wire [9:0] left_of_scheduler = (residual_due ? 10'd30 : 10'd0)
         + 10'd20 * fields_due - 10'd5 * residuals_there
         + (start[2] ? 10'd14 : (start != 3'd0) ? 10'd4 : (issuing != 3'd0) ? 10'd2 : 10'd0)
         + (field_there ? 10'd5 : field_started ? 10'd10 : 10'd0);
@@ -371,7 +371,7 @@ module harness (
         + (correcting ? (answer_waits ? 10'd83 : 10'd88) : 10'd0)
         + (friction_due ? 10'd68 : summary_due ? 10'd63 : summary_busy ? 10'd58 : 10'd0);
     wire [9:0] left_at_output = busy ? 10'd5 + LAST_BEAT - beat : beat_issued ? 10'd3 : {9'd0, field_release};
-    wire [9:0] left = left_of_turns + left_of_search + left_at_output;
+    wire [9:0] left = left_of_scheduler + left_of_search + left_at_output;
     wire asked = (issuing != 3'd0) || (open != 3'd0) || (searching && !found_waits)
         || (extracting && !centre_waits) || showing || (correcting && !answer_waits) || summary_due;
     wire answered = issued || sums_written || coefficients_complete || residual_written || field_complete

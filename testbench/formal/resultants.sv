@@ -31,7 +31,7 @@ module harness (
     wire out_tready;
     wire search_over;
     wire issuing;
-    wire turns_busy;
+    wire scheduler_busy;
     wire [1:0] u_held;
     wire u_released;
     wire [1:0] u_waiting;
@@ -108,8 +108,8 @@ module harness (
         .answer_take (search_over),
         .u_released (u_released),
         .\spmv_array.issuing_now (issuing),
-        .\turns.busy (turns_busy),
-        .\turns.u_held (u_held),
+        .\scheduler.busy (scheduler_busy),
+        .\scheduler.u_held (u_held),
         .\estimator.search_done (search_done),
         .\op.summary_busy (summary_busy),
         .\op.summary_there (summary_there),
@@ -145,7 +145,7 @@ module harness (
         .field_complete (field_complete),
         .field_release (field_release),
         .\op.fields_there (fields_there),
-        .\turns.frames_held (frames_held),
+        .\scheduler.frames_held (frames_held),
 `endif
         .\op.frame_output.busy (busy),
         .\op.frame_output.beat (beat),
@@ -277,7 +277,7 @@ module harness (
             assert (!sums_take || searching || !issuing || summed || (recent != 4'd0));
 `endif
             assert (!summed || issuing || arriving);
-            assert (turns_busy == (start || issuing));
+            assert (scheduler_busy == (start || issuing));
             // Op
             assert (!answer_waits || answering);
             assert (!summary_due || summary_busy);

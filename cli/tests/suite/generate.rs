@@ -66,7 +66,7 @@ fn from_a_new_design_to_a_folder() {
     let said = good(here, &["generate", "my_pad.toml"]);
     assert!(said.starts_with("rtl-out/my_pad: ") && said.contains("100 taxels, 16 lanes"), "{said}");
     let files = contents(&here.join("rtl-out/my_pad"));
-    for name in ["rtl/my_pad.v", "rom/my_pad_visits.mem", "mcsr/00_C33inv.txt", "metadata.json", "design.toml"] {
+    for name in ["rtl/my_pad.v", "rom/my_pad_slots.mem", "mcsr/00_C33inv.txt", "metadata.json", "design.toml"] {
         assert!(files.contains_key(name), "no {name}");
     }
     let beside: Vec<_> = fs::read_dir(here.join("rtl-out")).unwrap().collect();
@@ -224,7 +224,7 @@ fn a_design_that_became_smaller_leaves_no_file_of_the_larger() {
     fs::write(folder.path().join("pad.toml"), text).unwrap();
     good(folder.path(), &["generate", "pad.toml", "--out", "out"]);
     let files = contents(&folder.path().join("out"));
-    assert_eq!(files.keys().filter(|name| name.contains("values_lane")).count(), 1);
+    assert_eq!(files.keys().filter(|name| name.contains("values_pe")).count(), 1);
 }
 
 #[test]

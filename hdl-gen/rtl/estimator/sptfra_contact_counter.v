@@ -6,15 +6,15 @@
 // A taxel above 5/64 of the frame's largest |w| is a seed. Seeds that are neighbours along x or y are one connected
 // component. A component with 5/64 of all |w| is a contact. If none has, and without any |w|, the count is 1.
 //
-// Takes the weights as We makes them, in any order, a quad or a taxel a cycle; buffers two frames. Then the taxels pass
-// in raster order, one a cycle, with a step between rows. Latency from the last weights to the count: (COLUMNS + 1) *
-// ROWS + 12 cycles. The search takes longer, for any design, so that nothing ever waits here; simulations check it.
+// Takes the weights as We makes them, in any order, an orbit or a taxel a cycle. Buffers two frames. Then the taxels
+// pass in raster order, one a cycle, with a step between rows. Latency from the last weights to the count:
+// (COLUMNS + 1) * ROWS + 12 cycles. Any search takes longer, so nothing ever waits here; simulations check it.
 
 `default_nettype none
 
 module sptfra_contact_counter #(
-    // 4: weights come by quads of a folded grid; 1: by taxels
-    parameter WAYS = 4,
+    // 4: weights come by orbits of a folded grid; 1: by taxels
+    parameter CHANNELS = 4,
     // Taxels in x and y
     parameter COLUMNS = 10,
     parameter ROWS = 10,
@@ -23,7 +23,7 @@ module sptfra_contact_counter #(
     // From the last weights of a frame to its count, if none is counted just then, checked in simulation; 0: unchecked
     parameter integer EXPECTED_LATENCY = 0,
     // Derived
-    parameter ELEMENTS = (WAYS == 4) ? ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2) : COLUMNS * ROWS,
+    parameter ELEMENTS = (CHANNELS == 4) ? ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2) : COLUMNS * ROWS,
     parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3
 ) (
     input  wire clock,
@@ -31,15 +31,15 @@ module sptfra_contact_counter #(
     // Weights, from We
     input  wire weights_valid,
     input  wire [ROW_WIDTH-1:0] weights_row,
-    input  wire [WAYS*DATA_BITS-1:0] weights, // member 0 in the lowest bits
+    input  wire [CHANNELS*DATA_BITS-1:0] weights, // image 0 in the lowest bits
     // To Op: contacts of the oldest frame of which no output has begun
     output wire [7:0] contacts,
     input  wire contacts_take
 );
 
     generate
-        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
-            sptfra_error_ways_must_be_1_or_4 invalid ();
+        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
+            sptfra_error_channels_must_be_1_or_4 invalid ();
         end
     endgenerate
 
@@ -57,7 +57,7 @@ module sptfra_contact_counter #(
     wire [DATA_BITS-1:0] largest;
 
     sptfra_weight_totals #(
-        .WAYS      (WAYS),
+        .CHANNELS  (CHANNELS),
         .COLUMNS   (COLUMNS),
         .ROWS      (ROWS),
         .DATA_BITS (DATA_BITS),
@@ -128,7 +128,7 @@ module sptfra_contact_counter #(
     wire [DATA_BITS-1:0] weight;
 
     sptfra_weight_raster #(
-        .WAYS        (WAYS),
+        .CHANNELS    (CHANNELS),
         .COLUMNS     (COLUMNS),
         .ROWS        (ROWS),
         .DATA_BITS   (DATA_BITS),

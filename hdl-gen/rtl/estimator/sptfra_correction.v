@@ -32,15 +32,15 @@ module sptfra_correction #(
     parameter integer EXPECTED_FEATURES_LATENCY = 0,
     // ... from the first input of the network to the correction
     parameter integer EXPECTED_NETWORK_LATENCY = 0,
-    // Derived: quads, and the bits of their number
-    parameter integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
-    parameter integer ROW_WIDTH = (QUADS > 8) ? $clog2(QUADS) : 3
+    // Derived: orbits, and the bits of their number
+    parameter integer ORBITS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
+    parameter integer ROW_WIDTH = (ORBITS > 8) ? $clog2(ORBITS) : 3
 ) (
     input  wire clock,
     input  wire reset,
-    // u_q of a quad's taxels, member 0 and u_0 in the lowest bits, as the search reads them
+    // u_q of an orbit's taxels, image 0 and u_0 in the lowest bits, as the search reads them
     input  wire read_valid,
-    input  wire [ROW_WIDTH-1:0] read_quad,
+    input  wire [ROW_WIDTH-1:0] read_orbit,
     input  wire [3*4*27-1:0] read_values,
     // A frame is searched, with its sum |b| held from the next cycle on until the features start
     input  wire search_start,
@@ -83,7 +83,7 @@ module sptfra_correction #(
         .start          (search_start),
         .stress_sum     (stress_sum),
         .read_valid     (read_valid),
-        .read_quad      (read_quad),
+        .read_orbit     (read_orbit),
         .read_values    (read_values),
         .features_start (features_start),
         .mu_x           (mu_x),

@@ -13,8 +13,8 @@ module sptfra_estimator_joint #(
     parameter integer COLUMNS = 10,
     // Taxels along y
     parameter integer ROWS = 10,
-    // Taxels that arrive at a time: 4, the members of a quad
-    parameter integer WAYS = 4,
+    // Taxels that arrive at a time: 4, the images of an orbit
+    parameter integer CHANNELS = 4,
     // Bits of u_q
     parameter integer DATA_BITS = 27,
     // Points of the grid along an axis
@@ -62,16 +62,16 @@ module sptfra_estimator_joint #(
     parameter integer EXPECTED_NETWORK_LATENCY = 0,
     // ... from the centroid, or the correction, to the friction
     parameter integer EXPECTED_FRICTION_LATENCY = 0,
-    // Derived: quads, and the bits of their number
-    parameter integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
-    parameter integer ROW_WIDTH = (QUADS > 8) ? $clog2(QUADS) : 3
+    // Derived: orbits, and the bits of their number
+    parameter integer ORBITS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
+    parameter integer ROW_WIDTH = (ORBITS > 8) ? $clog2(ORBITS) : 3
 ) (
     input  wire clock,
     input  wire reset,
-    // u_q of a frame, way 0 in the lowest bits
+    // u_q of a frame, channel 0 in the lowest bits
     input  wire [2:0] u_valid, // q, one-hot
     input  wire [ROW_WIDTH-1:0] u_row,
-    input  wire [WAYS*DATA_BITS-1:0] u_values,
+    input  wire [CHANNELS*DATA_BITS-1:0] u_values,
     input  wire u_complete, // one cycle, with the last ones
     // From Co, held until taken
     input  wire sums_complete,
@@ -105,15 +105,15 @@ module sptfra_estimator_joint #(
 );
 
     generate
-        if (WAYS != 4) begin : gen_check
-            sptfra_error_the_joint_estimator_needs_four_ways invalid ();
+        if (CHANNELS != 4) begin : gen_check
+            sptfra_error_the_joint_estimator_needs_four_channels invalid ();
         end
     endgenerate
 
     // ---- u_q: a register on the way to their memory, and their bank with them
     reg [2:0] fill_valid;
     reg [ROW_WIDTH-1:0] fill_row;
-    reg [WAYS*DATA_BITS-1:0] fill_values;
+    reg [CHANNELS*DATA_BITS-1:0] fill_values;
     reg fill_bank;
     wire next_fill_bank;
 
@@ -197,7 +197,7 @@ module sptfra_estimator_joint #(
 
     // ---- Search
     wire read_valid;
-    wire [ROW_WIDTH-1:0] read_quad;
+    wire [ROW_WIDTH-1:0] read_orbit;
     wire [3*4*27-1:0] read_values;
 
     sptfra_grid_search #(
@@ -215,7 +215,7 @@ module sptfra_estimator_joint #(
         .clock       (clock),
         .reset       (reset),
         .u_valid     (fill_valid),
-        .u_quad      (fill_row),
+        .u_orbit     (fill_row),
         .u_values    (fill_values),
         .fill_bank   (fill_bank),
         .search_bank (search_bank),
@@ -223,7 +223,7 @@ module sptfra_estimator_joint #(
         .stress_sum  (search_stress_sum),
         .largest     (search_largest),
         .read_valid  (read_valid),
-        .read_quad   (read_quad),
+        .read_orbit  (read_orbit),
         .read_values (read_values),
         .done        (level_done),
         .mu_x        (found_x),
@@ -290,7 +290,7 @@ module sptfra_estimator_joint #(
                 .clock          (clock),
                 .reset          (reset),
                 .read_valid     (read_valid),
-                .read_quad      (read_quad),
+                .read_orbit     (read_orbit),
                 .read_values    (read_values),
                 .search_start   (search_start),
                 .stress_sum     (search_stress_sum),
@@ -310,7 +310,7 @@ module sptfra_estimator_joint #(
             assign {centre_done, window_done, correction_done, features_saturated} = 4'd0;
             assign {correction_x, correction_y} = 36'd0;
 
-            wire _unused = &{1'b0, features_start, features_x, features_y, read_valid, read_quad, read_values,
+            wire _unused = &{1'b0, features_start, features_x, features_y, read_valid, read_orbit, read_values,
                 HALF_X != 0, HALF_Y != 0, LENGTH != 0, PASSES != 0, STRESS_LEFT != 0, UNIT_SHIFT != 0,
                 CORRECTION_SHIFT != 0, EXPECTED_FEATURES_LATENCY != 0,
                 EXPECTED_NETWORK_LATENCY != 0, AT_ONCE != 0, ROM_DIR == "", ROM_NAME == ""};

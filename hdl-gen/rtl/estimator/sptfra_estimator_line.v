@@ -14,11 +14,11 @@ module sptfra_estimator_line #(
     parameter integer COLUMNS = 10,
     // Taxels along y
     parameter integer ROWS = 10,
-    // Taxels that arrive at a time: 4, the members of a quad, or 1
-    parameter integer WAYS = 4,
+    // Taxels that arrive at a time: 4, the images of an orbit, or 1
+    parameter integer CHANNELS = 4,
     // Bits of u_q
     parameter integer DATA_BITS = 27,
-    // Cells of the search, a multiplier each; as many for each way
+    // Cells of the search, a multiplier each; as many for each channel
     parameter integer CELLS = 16,
     // Taxels of a cell, a power of two
     parameter integer CELL_ELEMENTS = 8,
@@ -35,16 +35,16 @@ module sptfra_estimator_line #(
     parameter integer EXPECTED_LINE_LATENCY = 0,
     // From the start of a search to its end, checked in simulation; 0: unchecked
     parameter integer EXPECTED_SEARCH_LATENCY = 0,
-    // Derived: quads, or taxels, and the bits of their number
-    parameter integer ELEMENTS = (WAYS == 4) ? ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2) : COLUMNS * ROWS,
+    // Derived: orbits, or taxels, and the bits of their number
+    parameter integer ELEMENTS = (CHANNELS == 4) ? ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2) : COLUMNS * ROWS,
     parameter integer ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3
 ) (
     input  wire clock,
     input  wire reset,
-    // u_q of a frame, way 0 in the lowest bits
+    // u_q of a frame, channel 0 in the lowest bits
     input  wire [2:0] u_valid, // q, one-hot
     input  wire [ROW_WIDTH-1:0] u_row,
-    input  wire [WAYS*DATA_BITS-1:0] u_values,
+    input  wire [CHANNELS*DATA_BITS-1:0] u_values,
     input  wire u_complete, // one cycle, with the last ones
     // From Co, held until taken
     input  wire sums_complete,
@@ -78,15 +78,15 @@ module sptfra_estimator_line #(
 );
 
     generate
-        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check
-            sptfra_error_ways_must_be_1_or_4 invalid ();
+        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check
+            sptfra_error_channels_must_be_1_or_4 invalid ();
         end
     endgenerate
 
     // ---- u_q: a register on the way to all cells
     reg [2:0] fill_valid;
     reg [ROW_WIDTH-1:0] fill_row;
-    reg [WAYS*DATA_BITS-1:0] fill_values;
+    reg [CHANNELS*DATA_BITS-1:0] fill_values;
     reg fill_complete;
 
     always @(posedge clock) begin
@@ -197,7 +197,7 @@ module sptfra_estimator_line #(
     sptfra_search #(
         .COLUMNS          (COLUMNS),
         .ROWS             (ROWS),
-        .WAYS             (WAYS),
+        .CHANNELS         (CHANNELS),
         .DATA_BITS        (DATA_BITS),
         .ROW_WIDTH        (ROW_WIDTH),
         .CELLS            (CELLS),

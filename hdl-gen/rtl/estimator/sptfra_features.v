@@ -3,11 +3,11 @@
 //
 // Feature window: stress of the normal forces alone, around the contact's centre.
 //
-// First comes the scale, 1 / sum |b|, during the grid search. Then the stress, a quad in two cycles, the moments of its
-// compression and their centroid. The window waits until the network is free, and is folded into parity classes. While
-// one frame is in the window the next one may start.
+// First comes the scale, 1 / sum |b|, during the grid search. Then the stress, an orbit in two cycles, the moments of
+// its compression and their centroid. The window waits until the network is free, and is folded into parity
+// components. While one frame is in the window the next one may start.
 //
-// From start to the scale: 8 cycles and a division. From features_start to features_done: two cycles a quad, and 33.
+// From start to the scale: 8 cycles and a division. From features_start to features_done: two cycles an orbit, and 33.
 // From window_start to window_done: 10, and one a word.
 
 `default_nettype none
@@ -17,7 +17,7 @@ module sptfra_features #(
     parameter integer COLUMNS = 10,
     // Taxels along y
     parameter integer ROWS = 10,
-    // Bits of the number of a quad
+    // Bits of the number of an orbit
     parameter integer ROW_WIDTH = 5,
     // Taxels on either side of the window's middle
     parameter integer HALF_X = 4,
@@ -36,9 +36,9 @@ module sptfra_features #(
     // A frame, with its sum |b| held from the next cycle on until its centroid of the level set is there
     input  wire start,
     input  wire [39:0] stress_sum,
-    // u_q of a quad's taxels, member 0 and u_0 in the lowest bits, as the search reads them
+    // u_q of an orbit's taxels, image 0 and u_0 in the lowest bits, as the search reads them
     input  wire read_valid,
-    input  wire [ROW_WIDTH-1:0] read_quad,
+    input  wire [ROW_WIDTH-1:0] read_orbit,
     input  wire [3*4*27-1:0] read_values,
     // The centroid is there, and held from the next cycle on until the window is done
     input  wire features_start,
@@ -51,14 +51,14 @@ module sptfra_features #(
     output wire input_valid,
     output wire input_first, // with the first of them
     output wire [WORD_WIDTH-1:0] input_word,
-    output wire [4*27-1:0] input_values, // class 0 in the lowest bits
+    output wire [4*27-1:0] input_values, // component 0 in the lowest bits
     output wire window_done // one cycle, with the last of them
 );
 
     // Of the centre: taxels, and fraction of a pitch
     localparam integer CENTRE_BITS = 22;
     localparam integer TAXEL_BITS = 6;
-    localparam integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2);
+    localparam integer ORBITS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2);
     localparam integer SUM_BITS = 40;
     localparam integer RECIPROCAL_BITS = 16;
     localparam [63:0] NUMERATOR = 64'd1 << (SUM_BITS + RECIPROCAL_BITS);
@@ -127,24 +127,24 @@ module sptfra_features #(
     end
 
     // ---- u_q, of a frame of its own: the next one may be searched meanwhile
-    wire [ROW_WIDTH-1:0] u_quad;
+    wire [ROW_WIDTH-1:0] u_orbit;
     wire [3*4*27-1:0] u_values;
     genvar index;
 
     generate
-        // A search that begins after features is behind them all the way: two cycles a quad at least
+        // A search that begins after features is behind them all the way: two cycles an orbit at least
         for (index = 0; index < 3; index = index + 1) begin : gen_memories
             sptfra_ram #(
                 .WIDTH         (4 * 27),
-                .DEPTH         ((QUADS > 8) ? QUADS : 8),
+                .DEPTH         ((ORBITS > 8) ? ORBITS : 8),
                 .ADDRESS_WIDTH (ROW_WIDTH)
             ) of_q (
                 .clock         (clock),
                 .write_enable  (read_valid),
-                .write_address (read_quad),
+                .write_address (read_orbit),
                 .write_data    (read_values[4*27*index +: 4*27]),
                 .read_enable   (1'b1),
-                .read_address  (u_quad),
+                .read_address  (u_orbit),
                 .read_data     (u_values[4*27*index +: 4*27])
             );
         end
@@ -152,7 +152,7 @@ module sptfra_features #(
 
     // ---- Stress
     wire share_valid;
-    wire [ROW_WIDTH-1:0] share_quad;
+    wire [ROW_WIDTH-1:0] share_orbit;
     wire [4*25-1:0] shares;
     wire stresses_there;
     wire [47:0] weight_sum;
@@ -172,10 +172,10 @@ module sptfra_features #(
         .start       (features_start),
         .mu_x        (mu_x),
         .mu_y        (mu_y),
-        .u_quad      (u_quad),
+        .u_orbit     (u_orbit),
         .u_values    (u_values),
         .share_valid (share_valid),
-        .share_quad  (share_quad),
+        .share_orbit (share_orbit),
         .shares      (shares),
         .done        (stresses_there),
         .weight_sum  (weight_sum),
@@ -218,7 +218,7 @@ module sptfra_features #(
         .clock        (clock),
         .reset        (reset),
         .share_valid  (share_valid),
-        .share_quad   (share_quad),
+        .share_orbit  (share_orbit),
         .shares       (shares),
         .start        (window_start),
         .centroid_x   (nothing ? {CENTRE_BITS{1'b0}} : ratio_x),

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Stress of the normal forces alone, a quad in two cycles. n = u0 + mu_x u1 + mu_y u2 at the centroid of the level
+// Stress of the normal forces alone, an orbit in two cycles. n = u0 + mu_x u1 + mu_y u2 at the centroid of the level
 // set, with steps four times those of u.
 //
 // Outputs: 16 n as a share of sum |b|, with 19 fraction bits, and the moments of the compression. From start to done:
-// two cycles a quad, and 10.
+// two cycles an orbit, and 10.
 
 `default_nettype none
 
@@ -14,7 +14,7 @@ module sptfra_features_stress #(
     parameter integer COLUMNS = 10,
     // Taxels along y
     parameter integer ROWS = 10,
-    // Bits of the number of a quad
+    // Bits of the number of an orbit
     parameter integer ROW_WIDTH = 5,
     // Left shift of n times the reciprocal, before the right shift by the bits of sum |b|
     parameter integer STRESS_LEFT = 9
@@ -28,12 +28,12 @@ module sptfra_features_stress #(
     input  wire start,
     input  wire signed [17:0] mu_x,
     input  wire signed [17:0] mu_y,
-    // u_q of a quad's taxels, a cycle after they are asked for
-    output reg  [ROW_WIDTH-1:0] u_quad,
+    // u_q of an orbit's taxels, a cycle after they are asked for
+    output reg  [ROW_WIDTH-1:0] u_orbit,
     input  wire [3*4*27-1:0] u_values,
-    // Shares of a quad's taxels
+    // Shares of an orbit's taxels
     output wire share_valid,
-    output wire [ROW_WIDTH-1:0] share_quad,
+    output wire [ROW_WIDTH-1:0] share_orbit,
     output wire [4*25-1:0] shares,
     // Moments of the compression, held until the next start
     output wire done, // all are in; one cycle
@@ -43,10 +43,10 @@ module sptfra_features_stress #(
     output reg  saturated // a share was clipped
 );
 
-    localparam integer QUAD_COLUMNS = (COLUMNS + 1) / 2;
-    localparam integer QUADS = QUAD_COLUMNS * ((ROWS + 1) / 2);
-    localparam integer LAST_QUAD = QUADS - 1;
-    localparam integer LAST_QUAD_COLUMN = QUAD_COLUMNS - 1;
+    localparam integer ORBIT_COLUMNS = (COLUMNS + 1) / 2;
+    localparam integer ORBITS = ORBIT_COLUMNS * ((ROWS + 1) / 2);
+    localparam integer LAST_ORBIT = ORBITS - 1;
+    localparam integer LAST_ORBIT_COLUMN = ORBIT_COLUMNS - 1;
     localparam integer LAST_COLUMN = COLUMNS - 1;
     localparam integer LAST_ROW = ROWS - 1;
     // 16 fraction bits of the friction, two by which n is coarser than u
@@ -54,16 +54,16 @@ module sptfra_features_stress #(
     localparam signed [47:0] NORMAL_HALF = 48'sd1 <<< (NORMAL_SHIFT - 1);
     localparam integer STRESS_BITS = 25; // of a share
     localparam integer SHARE_BITS = 45 + STRESS_LEFT; // before it is clipped
-    localparam integer STAGES = 11; // from a quad's second cycle to its shares
+    localparam integer STAGES = 11; // from an orbit's second cycle to its shares
     localparam integer SUMMED = 10; // ... to its moments being in
     localparam integer INDEX_WIDTH = $clog2((COLUMNS > ROWS) ? COLUMNS : ROWS); // of a column and of a row
-    localparam integer WEIGHT_BITS = 28 + $clog2(QUADS); // of a sum of compressions
+    localparam integer WEIGHT_BITS = 28 + $clog2(ORBITS); // of a sum of compressions
     localparam integer MOMENT_BITS = WEIGHT_BITS + INDEX_WIDTH;
 
-    // ---- Quads, two cycles each: u1, then u2. Index k: k cycles after the counters
+    // ---- Orbits, two cycles each: u1, then u2. Index k: k cycles after the counters
     reg running;
-    reg second; // of a quad's cycles
-    wire last_cycle = second && (u_quad == LAST_QUAD[ROW_WIDTH-1:0]);
+    reg second; // of an orbit's cycles
+    wire last_cycle = second && (u_orbit == LAST_ORBIT[ROW_WIDTH-1:0]);
     reg first_1;
     reg [STAGES:1] seconds;
     reg [SUMMED:1] lasts;
@@ -71,7 +71,7 @@ module sptfra_features_stress #(
     always @(posedge clock) begin
         if (running) begin
             second <= !second;
-            u_quad <= second ? u_quad + 1'b1 : u_quad;
+            u_orbit <= second ? u_orbit + 1'b1 : u_orbit;
         end
         if (running && last_cycle) begin
             running <= 1'b0;
@@ -79,7 +79,7 @@ module sptfra_features_stress #(
         if (start) begin
             running <= 1'b1;
             second <= 1'b0;
-            u_quad <= {ROW_WIDTH{1'b0}};
+            u_orbit <= {ROW_WIDTH{1'b0}};
         end
         first_1 <= running && !second;
         seconds <= {seconds[STAGES-1:1], running && second};
@@ -94,18 +94,18 @@ module sptfra_features_stress #(
 
     assign done = lasts[SUMMED];
 
-    // ---- Stress of the normal forces: there five cycles after a quad's second one, and for two
+    // ---- Stress of the normal forces: there five cycles after an orbit's second one, and for two
     wire [4*27-1:0] normals;
     wire [4*27-1:0] compressions; // a cycle later
 
     genvar index;
 
     generate
-        for (index = 0; index < 4; index = index + 1) begin : gen_members
+        for (index = 0; index < 4; index = index + 1) begin : gen_images
             wire signed [26:0] u0 = u_values[27*index +: 27];
             wire signed [26:0] u1 = u_values[27*(4 + index) +: 27];
             wire signed [26:0] u2 = u_values[27*(8 + index) +: 27];
-            reg signed [26:0] u0_2; // from two cycles after the second one of its quad on
+            reg signed [26:0] u0_2; // from two cycles after the second one of its orbit on
             reg signed [26:0] u0_4;
             wire signed [47:0] friction;
             wire signed [47:0] rounded = friction + { {5{u0_4[26]}}, u0_4, 16'd0} + NORMAL_HALF;
@@ -142,14 +142,14 @@ module sptfra_features_stress #(
         end
     endgenerate
 
-    // ---- Moments of the compression, index k: k cycles after a quad's second one. One half of a quad, then the other
+    // ---- Moments of the compression, index k: k cycles after an orbit's second one. One half, then the other
     reg [26:0] at_left; // two compressions: of three stresses added up, a quarter as fine
     reg [26:0] at_right;
     reg [26:0] at_top;
     reg [26:0] at_bottom;
-    reg [INDEX_WIDTH-1:0] column; // of the quad
+    reg [INDEX_WIDTH-1:0] column; // of the orbit
     reg [INDEX_WIDTH-1:0] row;
-    wire last_column = (column == LAST_QUAD_COLUMN[INDEX_WIDTH-1:0]);
+    wire last_column = (column == LAST_ORBIT_COLUMN[INDEX_WIDTH-1:0]);
     wire other_half = seconds[8];
     wire [26:0] along_x = other_half ? at_right : at_left;
     wire [26:0] along_y = other_half ? at_bottom : at_top;
@@ -210,11 +210,11 @@ module sptfra_features_stress #(
         end
     end
 
-    // ---- Shares of sum |b|, clipped: of members 0 and 1 first, then of 2 and 3
+    // ---- Shares of sum |b|, clipped: of images 0 and 1 first, then of 2 and 3
     wire [2*STRESS_BITS-1:0] pair;
     wire [1:0] fits;
     reg [2*STRESS_BITS-1:0] first_pair;
-    reg [ROW_WIDTH-1:0] quad_11;
+    reg [ROW_WIDTH-1:0] orbit_11;
 
     generate
         for (index = 0; index < 2; index = index + 1) begin : gen_shares
@@ -260,19 +260,19 @@ module sptfra_features_stress #(
     endgenerate
 
     assign share_valid = seconds[11];
-    assign share_quad = quad_11;
+    assign share_orbit = orbit_11;
     assign shares = {pair, first_pair};
 
     always @(posedge clock) begin
         first_pair <= pair;
         if (seconds[11]) begin
-            quad_11 <= quad_11 + 1'b1;
+            orbit_11 <= orbit_11 + 1'b1;
         end
         if ((seconds[9] || seconds[10]) && (fits != 2'b11)) begin
             saturated <= 1'b1;
         end
         if (start) begin
-            quad_11 <= {ROW_WIDTH{1'b0}};
+            orbit_11 <= {ROW_WIDTH{1'b0}};
             saturated <= 1'b0;
         end
     end

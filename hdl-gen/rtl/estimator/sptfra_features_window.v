@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// A window of the taxels' shares around the contact, folded into parity classes: the words of the network.
+// A window of the taxels' shares around the contact, folded into parity components: the words of the network.
 //
 // The window has 2 HALF_X + 1 by 2 HALF_Y + 1 taxels about the taxel nearest to the centroid of the compression. A
-// word of four classes for each of its places comes first. Then follow 1, mu_x, mu_y and the centroid's offset from
+// word of four components for each of its places comes first. Then follow 1, mu_x, mu_y and the centroid's offset from
 // that taxel in x and y. All have 19 fraction bits. From start to the first of them: 11 cycles; then one a cycle, the
 // last with done.
 
@@ -15,7 +15,7 @@ module sptfra_features_window #(
     parameter integer COLUMNS = 10,
     // Taxels along y
     parameter integer ROWS = 10,
-    // Bits of the number of a quad
+    // Bits of the number of an orbit
     parameter integer ROW_WIDTH = 5,
     // Taxels on either side of the window's middle
     parameter integer HALF_X = 4,
@@ -27,9 +27,9 @@ module sptfra_features_window #(
 ) (
     input  wire clock,
     input  wire reset,
-    // Shares of a quad's taxels, member 0 in the lowest bits
+    // Shares of an orbit's taxels, image 0 in the lowest bits
     input  wire share_valid,
-    input  wire [ROW_WIDTH-1:0] share_quad,
+    input  wire [ROW_WIDTH-1:0] share_orbit,
     input  wire [4*25-1:0] shares,
     // All shares are in; the centroid is there, and held
     input  wire start,
@@ -41,7 +41,7 @@ module sptfra_features_window #(
     output reg  input_valid,
     output reg  input_first, // with the first of them
     output reg  [WORD_WIDTH-1:0] input_word,
-    output reg  [4*27-1:0] input_values, // class 0 in the lowest bits
+    output reg  [4*27-1:0] input_values, // component 0 in the lowest bits
     output reg  done // one cycle, with the last of them
 );
 
@@ -56,9 +56,9 @@ module sptfra_features_window #(
     localparam integer PLACES = (HALF_X + 1) * (HALF_Y + 1);
     localparam integer LAST_OF_WINDOW = PLACES - 1;
     localparam integer LAST_BUT_ONE = LENGTH - 2;
-    localparam integer QUAD_COLUMNS = (COLUMNS + 1) / 2;
-    localparam integer QUAD_ROWS = (ROWS + 1) / 2;
-    localparam integer SEEN_DEPTH = (QUAD_COLUMNS * QUAD_ROWS > 8) ? QUAD_COLUMNS * QUAD_ROWS : 8;
+    localparam integer ORBIT_COLUMNS = (COLUMNS + 1) / 2;
+    localparam integer ORBIT_ROWS = (ROWS + 1) / 2;
+    localparam integer SEEN_DEPTH = (ORBIT_COLUMNS * ORBIT_ROWS > 8) ? ORBIT_COLUMNS * ORBIT_ROWS : 8;
     localparam integer LAST_COLUMN = COLUMNS - 1;
     localparam integer LAST_ROW = ROWS - 1;
     localparam [8:0] GRID_COLUMNS = COLUMNS[8:0];
@@ -90,7 +90,7 @@ module sptfra_features_window #(
         left_y <= {2'd0, centroid_y[15:0]} - {1'b0, centre_y[0] ^ centroid_y[16], 16'd0};
     end
 
-    // ---- Places of a quarter of the window, and where their members stand; index k: k cycles after the counters
+    // ---- Places of a quarter of the window, and where their images stand; index k: k cycles after the counters
     reg [PX_WIDTH-1:0] place_x;
     reg [PY_WIDTH-1:0] place_y;
     wire reading = (state == WINDOW);
@@ -114,9 +114,9 @@ module sptfra_features_window #(
         end
     end
 
-    // Along each axis, the side that grows and the mirrored one: the quad's column and row, whether the taxel is in the
-    // far half of the grid, and whether it is one at all. On the middle of the window both sides coincide, and only the
-    // first one counts
+    // Along each axis, the side that grows and the mirrored one: the orbit's column and row, whether the taxel is in
+    // the far half of the grid, and whether it is one at all. On the middle of the window both sides coincide, and only
+    // the first one counts
     wire [9:0] column_2 [0:1];
     wire [9:0] row_2 [0:1];
     wire [1:0] far_x_2;
@@ -132,8 +132,8 @@ module sptfra_features_window #(
             reg signed [9:0] at_y;
             reg counts_x;
             reg counts_y;
-            wire in_far_x = (at_x[8:0] >= QUAD_COLUMNS[8:0]);
-            wire in_far_y = (at_y[8:0] >= QUAD_ROWS[8:0]);
+            wire in_far_x = (at_x[8:0] >= ORBIT_COLUMNS[8:0]);
+            wire in_far_y = (at_y[8:0] >= ORBIT_ROWS[8:0]);
             reg [9:0] column;
             reg [9:0] row;
             reg far_x;
@@ -163,18 +163,18 @@ module sptfra_features_window #(
         end
     endgenerate
 
-    // ---- Members: the share of the quad's taxel in the right quarter of the grid, each from memories of its own
-    wire [4*STRESS_BITS-1:0] members_5;
+    // ---- Images: the share of the orbit's taxel in the right quarter of the grid, each from memories of its own
+    wire [4*STRESS_BITS-1:0] images_5;
     wire [4*INPUT_BITS-1:0] folded_7;
 
-    genvar member;
+    genvar image;
     genvar quarter;
 
     generate
-        for (member = 0; member < 4; member = member + 1) begin : gen_members
+        for (image = 0; image < 4; image = image + 1) begin : gen_images
             wire [47:0] row_base;
-            wire [31:0] quad_2 = row_base[31:0] + {22'd0, column_2[member % 2]};
-            reg [ROW_WIDTH-1:0] quad_3;
+            wire [31:0] orbit_2 = row_base[31:0] + {22'd0, column_2[image % 2]};
+            reg [ROW_WIDTH-1:0] orbit_3;
             reg [1:0] quarter_3;
             reg [1:0] quarter_4;
             reg inside_3;
@@ -185,8 +185,8 @@ module sptfra_features_window #(
             sptfra_times_index #(
                 .INDEX_WIDTH (6)
             ) times_row (
-                .number  (QUAD_COLUMNS[26:0]),
-                .index   (row_2[member / 2][5:0]),
+                .number  (ORBIT_COLUMNS[26:0]),
+                .index   (row_2[image / 2][5:0]),
                 .product (row_base)
             );
 
@@ -198,26 +198,26 @@ module sptfra_features_window #(
                 ) seen (
                     .clock         (clock),
                     .write_enable  (share_valid),
-                    .write_address (share_quad),
+                    .write_address (share_orbit),
                     .write_data    (shares[STRESS_BITS*quarter +: STRESS_BITS]),
                     .read_enable   (1'b1),
-                    .read_address  (quad_3),
+                    .read_address  (orbit_3),
                     .read_data     (seen_4[quarter])
                 );
             end
 
             always @(posedge clock) begin
-                quad_3 <= quad_2[ROW_WIDTH-1:0];
-                quarter_3 <= {far_y_2[member / 2], far_x_2[member % 2]};
+                orbit_3 <= orbit_2[ROW_WIDTH-1:0];
+                quarter_3 <= {far_y_2[image / 2], far_x_2[image % 2]};
                 quarter_4 <= quarter_3;
-                inside_3 <= inside_x_2[member % 2] && inside_y_2[member / 2];
+                inside_3 <= inside_x_2[image % 2] && inside_y_2[image / 2];
                 inside_4 <= inside_3;
                 value_5 <= inside_4 ? seen_4[quarter_4] : {STRESS_BITS{1'b0}};
             end
 
-            assign members_5[STRESS_BITS*member +: STRESS_BITS] = value_5;
+            assign images_5[STRESS_BITS*image +: STRESS_BITS] = value_5;
 
-            wire _unused = &{1'b0, row_base, quad_2, row_2[member / 2]};
+            wire _unused = &{1'b0, row_base, orbit_2, row_2[image / 2]};
         end
     endgenerate
 
@@ -226,7 +226,7 @@ module sptfra_features_window #(
     ) fold (
         .clock  (clock),
         .enable (1'b1),
-        .values (members_5),
+        .values (images_5),
         .sums   (folded_7)
     );
 

@@ -5,7 +5,7 @@
 //
 // The points are evaluated in parallel, or serially, a row of them at a time.
 //
-// Latency from start to done, with Q quads:
+// Latency from start to done, with Q orbits:
 //   parallel, one taxel a cycle   4 Q + 49 + 4 SIDE
 //   parallel, two taxels a cycle  2 Q + 51 + 2 SIDE
 //   serial                        SIDE (4 Q + 4) + 49
@@ -33,15 +33,15 @@ module sptfra_grid_search #(
     parameter integer EXPECTED_VALUES_LATENCY = 0,
     // ... from that row to the centroid
     parameter integer EXPECTED_LEVEL_LATENCY = 0,
-    // Derived: quads, and the bits of their number
-    parameter integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
-    parameter integer ROW_WIDTH = (QUADS > 8) ? $clog2(QUADS) : 3
+    // Derived: orbits, and the bits of their number
+    parameter integer ORBITS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
+    parameter integer ROW_WIDTH = (ORBITS > 8) ? $clog2(ORBITS) : 3
 ) (
     input  wire clock,
     input  wire reset,
-    // u_q of a quad's taxels, member 0 in the lowest bits
+    // u_q of an orbit's taxels, image 0 in the lowest bits
     input  wire [2:0] u_valid, // q, one-hot
-    input  wire [ROW_WIDTH-1:0] u_quad,
+    input  wire [ROW_WIDTH-1:0] u_orbit,
     input  wire [4*DATA_BITS-1:0] u_values,
     input  wire fill_bank,
     input  wire search_bank,
@@ -49,9 +49,9 @@ module sptfra_grid_search #(
     input  wire start,
     input  wire [39:0] stress_sum,
     input  wire [26:0] largest, // max |b|
-    // All of a quad as it is first read: u_0 in the lowest bits
+    // All of an orbit as it is first read: u_0 in the lowest bits
     output wire read_valid,
-    output wire [ROW_WIDTH-1:0] read_quad,
+    output wire [ROW_WIDTH-1:0] read_orbit,
     output wire [3*4*27-1:0] read_values,
     // Result, held until the next start
     output wire done, // one cycle
@@ -85,7 +85,7 @@ module sptfra_grid_search #(
         .clock       (clock),
         .reset       (reset),
         .u_valid     (u_valid),
-        .u_quad      (u_quad),
+        .u_orbit     (u_orbit),
         .u_values    (u_values),
         .fill_bank   (fill_bank),
         .search_bank (search_bank),
@@ -94,7 +94,7 @@ module sptfra_grid_search #(
         .largest     (largest),
         .margin      (margin),
         .read_valid  (read_valid),
-        .read_quad   (read_quad),
+        .read_orbit  (read_orbit),
         .read_values (read_values),
         .row_valid   (row_valid),
         .again       (again),

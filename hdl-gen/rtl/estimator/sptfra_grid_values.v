@@ -11,7 +11,7 @@
 //   SIDE         one a column, row after  4 Q + 13                  4 Q + 1 cycles
 //                row of the grid
 //
-// Q: quads; the second figure is with two taxels a cycle. Each row can be read again until the next start.
+// Q: orbits; the second figure is with two taxels a cycle. Each row can be read again until the next start.
 
 `default_nettype none
 
@@ -22,7 +22,7 @@ module sptfra_grid_values #(
     parameter integer ROWS = 10,
     // Bits of u_q
     parameter integer DATA_BITS = 27,
-    // Bits of the number of a quad
+    // Bits of the number of an orbit
     parameter integer ROW_WIDTH = 5,
     // Points along an axis, 11 or 13
     parameter integer SIDE = 13,
@@ -42,9 +42,9 @@ module sptfra_grid_values #(
 ) (
     input  wire clock,
     input  wire reset,
-    // u_q of a quad's taxels, member 0 in the lowest bits
+    // u_q of an orbit's taxels, image 0 in the lowest bits
     input  wire [2:0] u_valid,
-    input  wire [ROW_WIDTH-1:0] u_quad,
+    input  wire [ROW_WIDTH-1:0] u_orbit,
     input  wire [4*DATA_BITS-1:0] u_values,
     input  wire fill_bank,
     input  wire search_bank,
@@ -54,9 +54,9 @@ module sptfra_grid_values #(
     input  wire [26:0] largest, // max |b|
     // 2^-8 sum |b|, in the steps of B
     output wire [MARGIN_BITS-1:0] margin,
-    // All of a quad as it is first read, u_0 in the lowest bits
+    // All of an orbit as it is first read, u_0 in the lowest bits
     output reg  read_valid,
-    output reg  [ROW_WIDTH-1:0] read_quad,
+    output reg  [ROW_WIDTH-1:0] read_orbit,
     output reg  [3*4*27-1:0] read_values,
     // B, a row of points at a time, mu_x from the least one on in the lowest bits; held until the next one
     output reg  row_valid,
@@ -65,14 +65,14 @@ module sptfra_grid_values #(
     output wire clipped // a u was; held until the next start
 );
 
-    localparam integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2);
-    localparam integer LAST_QUAD = QUADS - 1;
+    localparam integer ORBITS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2);
+    localparam integer LAST_ORBIT = ORBITS - 1;
     localparam integer AT_ONCE = PARALLEL / SIDE; // rows of the grid
     localparam integer IS_SERIAL = (AT_ONCE == 1) ? 1 : 0;
     localparam integer TERM_BITS = FRACTION + 4;
     localparam integer STAGES = 10 + TAXELS; // from a taxel's address to its tension being added to the sums
     localparam [1:0] STEP = TAXELS[1:0];
-    localparam [1:0] LAST_MEMBER = 2'd0 - STEP;
+    localparam [1:0] LAST_IMAGE = 2'd0 - STEP;
     localparam [3:0] LAST_ROW = SIDE[3:0] - 4'd1;
 
     generate
@@ -84,19 +84,19 @@ module sptfra_grid_values #(
         end
     endgenerate
 
-    // ---- Taxels: the members of a quad one after the other, or two. Index k: k cycles after the address
+    // ---- Taxels: the images of an orbit one after the other, or two. Index k: k cycles after the address
     reg reading;
     reg pausing; // a cycle from one row of the grid to the next
     reg [3:0] pass; // serial: the row of the grid
-    reg [ROW_WIDTH-1:0] quad;
-    reg [1:0] member;
-    reg [1:0] member_1;
-    reg [1:0] member_2;
-    wire last_taxel = (quad == LAST_QUAD[ROW_WIDTH-1:0]) && (member == LAST_MEMBER);
+    reg [ROW_WIDTH-1:0] orbit;
+    reg [1:0] image;
+    reg [1:0] image_1;
+    reg [1:0] image_2;
+    wire last_taxel = (orbit == LAST_ORBIT[ROW_WIDTH-1:0]) && (image == LAST_IMAGE);
     reg [STAGES:1] valids;
     reg [STAGES:1] lasts;
-    wire [3*4*27-1:0] quad_1;
-    wire [3*4*27-1:0] quad_2 = read_values; // a register behind the memory, then the choice
+    wire [3*4*27-1:0] orbit_1;
+    wire [3*4*27-1:0] orbit_2 = read_values; // a register behind the memory, then the choice
     wire [TAXELS*3*27-1:0] taxels_2;
     reg [TAXELS*3*27-1:0] taxels_3;
 
@@ -109,17 +109,17 @@ module sptfra_grid_values #(
         .clock       (clock),
         .u_valid     (u_valid),
         .fill_bank   (fill_bank),
-        .u_quad      (u_quad),
+        .u_orbit     (u_orbit),
         .u_values    (u_values),
         .read_bank   (search_bank),
-        .read_quad   (quad),
-        .read_values (quad_1)
+        .read_orbit  (orbit),
+        .read_values (orbit_1)
     );
 
     always @(posedge clock) begin
         if (reading) begin
-            member <= member + STEP;
-            quad <= (member == LAST_MEMBER) ? quad + 1'b1 : quad;
+            image <= image + STEP;
+            orbit <= (image == LAST_IMAGE) ? orbit + 1'b1 : orbit;
         end
         if (reading && last_taxel) begin
             reading <= 1'b0;
@@ -131,20 +131,20 @@ module sptfra_grid_values #(
             pass <= pass + 4'd1;
         end
         if (pausing || start) begin
-            quad <= {ROW_WIDTH{1'b0}};
-            member <= 2'd0;
+            orbit <= {ROW_WIDTH{1'b0}};
+            image <= 2'd0;
         end
         if (start) begin
             reading <= 1'b1;
             pausing <= 1'b0;
             pass <= 4'd0;
         end
-        member_1 <= member;
-        member_2 <= member_1;
+        image_1 <= image;
+        image_2 <= image_1;
         taxels_3 <= taxels_2;
-        read_valid <= valids[1] && (member_1 == 2'd0) && (pass == 4'd0);
-        read_quad <= quad; // of the same: it is read for two cycles at least
-        read_values <= quad_1;
+        read_valid <= valids[1] && (image_1 == 2'd0) && (pass == 4'd0);
+        read_orbit <= orbit; // of the same: it is read for two cycles at least
+        read_values <= orbit_1;
         valids <= {valids[STAGES-1:1], reading};
         lasts <= {lasts[STAGES-1:1], reading && last_taxel};
         if (reset) begin
@@ -181,13 +181,13 @@ module sptfra_grid_values #(
 
     generate
         for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_taxels
-            localparam [1:0] MEMBER = taxel;
-            wire [1:0] of_quad_2 = member_2 | MEMBER;
+            localparam [1:0] IMAGE = taxel;
+            wire [1:0] of_orbit_2 = image_2 | IMAGE;
 
             for (index = 0; index < 3; index = index + 1) begin : gen_select
-                wire [4*27-1:0] of_q = quad_2[4*27*index +: 4*27];
+                wire [4*27-1:0] of_q = orbit_2[4*27*index +: 4*27];
 
-                assign taxels_2[27*(3*taxel + index) +: 27] = of_q[27*of_quad_2 +: 27];
+                assign taxels_2[27*(3*taxel + index) +: 27] = of_q[27*of_orbit_2 +: 27];
             end
 
             sptfra_grid_terms #(

@@ -3,8 +3,8 @@
 //
 // Network of the correction: one hidden layer of rectifiers (ReLU), then two sums, averaged over mirror images.
 //
-// Input and weights stand in the basis of the parity classes. One pass gives the four classes' sums of AT_ONCE hidden
-// units. A butterfly turns them into the units of the four images, one after the other. PASSES passes of LENGTH
+// Input and weights stand in the basis of the parity components. One pass gives the four components' sums of AT_ONCE
+// hidden units. A butterfly turns them into the units of the four images, one after the other. PASSES passes of LENGTH
 // words, four MACs a unit. From start to done: a cycle for each word of each pass, one for each unit of one, and 14.
 
 `default_nettype none
@@ -17,7 +17,7 @@ module sptfra_network #(
     // Passes, and hidden units in each, a power of two from 4 on
     parameter integer PASSES = 4,
     parameter integer AT_ONCE = 4,
-    // Bits dropped from a class's sum
+    // Bits dropped from a component's sum
     parameter integer UNIT_SHIFT = 12,
     // Bits dropped from the sum of the output; negative: added
     parameter integer CORRECTION_SHIFT = 12,
@@ -30,7 +30,7 @@ module sptfra_network #(
 ) (
     input  wire clock,
     input  wire reset,
-    // Inputs, class 0 in the lowest bits, 19 fraction bits each
+    // Inputs, component 0 in the lowest bits, 19 fraction bits each
     input  wire input_valid,
     input  wire [WORD_WIDTH-1:0] input_word,
     input  wire [4*27-1:0] input_values,
@@ -43,7 +43,7 @@ module sptfra_network #(
 
     localparam integer INPUT_BITS = 27;
     localparam integer UNIT_BITS = 26; // of a hidden unit before the hinge
-    localparam integer SUMS = 4 * AT_ONCE; // units by four classes
+    localparam integer SUMS = 4 * AT_ONCE; // units by four components
     localparam integer UNITS = AT_ONCE * PASSES;
     localparam integer UNIT_WIDTH = $clog2(AT_ONCE);
     localparam integer SUMMING = AT_ONCE + 12; // from the last weight to the mean, before it is out
@@ -130,8 +130,8 @@ module sptfra_network #(
         .data          (weights_1)
     );
 
-    // ---- Sums of the units by class, at index 4 unit + class; held while the next pass begins
-    wire [UNIT_BITS*SUMS-1:0] class_sums;
+    // ---- Sums of the units by component, at index 4 unit + component; held while the next pass begins
+    wire [UNIT_BITS*SUMS-1:0] component_sums;
     reg [UNIT_BITS*SUMS-1:0] held;
     genvar index;
     generate
@@ -149,7 +149,7 @@ module sptfra_network #(
                 .accumulator (exact)
             );
 
-            assign class_sums[UNIT_BITS*index +: UNIT_BITS] = rounded[UNIT_SHIFT +: UNIT_BITS];
+            assign component_sums[UNIT_BITS*index +: UNIT_BITS] = rounded[UNIT_SHIFT +: UNIT_BITS];
 
             // The bits above are copies of the sign
             wire _unused = &{1'b0, rounded};
@@ -159,19 +159,19 @@ module sptfra_network #(
     // ---- One unit after the other: the mirror images, their hinges, mirrored back
     reg [UNIT_WIDTH:0] unit; // AT_ONCE: none
     reg [5:1] unit_there; // index k: k cycles after its number
-    reg [4*UNIT_BITS-1:0] classes_1;
+    reg [4*UNIT_BITS-1:0] components_1;
     wire [4*UNIT_BITS+7:0] images_3;
     wire [4*UNIT_BITS-1:0] hinges_3;
     wire [4*UNIT_BITS+7:0] mean_5;
 
     always @(posedge clock) begin
         if (pass_ends[4]) begin
-            held <= class_sums;
+            held <= component_sums;
             unit <= {(UNIT_WIDTH + 1){1'b0}};
         end else if (!unit[UNIT_WIDTH]) begin
             unit <= unit + 1'b1;
         end
-        classes_1 <= held[4*UNIT_BITS*unit[UNIT_WIDTH-1:0] +: 4*UNIT_BITS];
+        components_1 <= held[4*UNIT_BITS*unit[UNIT_WIDTH-1:0] +: 4*UNIT_BITS];
         unit_there <= {unit_there[4:1], !unit[UNIT_WIDTH]};
         if (reset) begin
             unit <= {1'b1, {UNIT_WIDTH{1'b0}}};
@@ -184,7 +184,7 @@ module sptfra_network #(
     ) mirror (
         .clock  (clock),
         .enable (1'b1),
-        .values (classes_1),
+        .values (components_1),
         .sums   (images_3)
     );
 

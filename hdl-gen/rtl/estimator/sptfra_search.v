@@ -16,13 +16,13 @@ module sptfra_search #(
     parameter integer COLUMNS = 10,
     // Taxels along y
     parameter integer ROWS = 10,
-    // Taxels that arrive at a time: 4, the members of a quad, or 1
-    parameter integer WAYS = 4,
+    // Taxels that arrive at a time: 4, the images of an orbit, or 1
+    parameter integer CHANNELS = 4,
     // Bits of u_q
     parameter integer DATA_BITS = 27,
-    // Bits of the number of a quad or taxel
+    // Bits of the number of an orbit or taxel
     parameter integer ROW_WIDTH = 5,
-    // Cells, as many for each way
+    // Cells, as many for each channel
     parameter integer CELLS = 16,
     // Taxels of a cell, a power of two
     parameter integer CELL_ELEMENTS = 8,
@@ -35,10 +35,10 @@ module sptfra_search #(
 ) (
     input  wire clock,
     input  wire reset,
-    // u_q, way 0 in the lowest bits
+    // u_q, channel 0 in the lowest bits
     input  wire [2:0] u_valid,
     input  wire [ROW_WIDTH-1:0] u_row,
-    input  wire [WAYS*DATA_BITS-1:0] u_values,
+    input  wire [CHANNELS*DATA_BITS-1:0] u_values,
     input  wire fill_bank, // of the cells' memories
     input  wire search_bank,
     // Start, with the line held from the next cycle on
@@ -153,7 +153,7 @@ module sptfra_search #(
     sptfra_search_cells #(
         .COLUMNS       (COLUMNS),
         .ROWS          (ROWS),
-        .WAYS          (WAYS),
+        .CHANNELS      (CHANNELS),
         .DATA_BITS     (DATA_BITS),
         .ROW_WIDTH     (ROW_WIDTH),
         .CELLS         (CELLS),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The cells of the search side by side, as many for each way, and the tree that adds their sums.
+// The cells of the search side by side, as many for each channel, and the tree that adds their sums.
 //
 // Every taxel's u_q goes to its own cell. Last taxel's address to totals: 5 cycles, with three points 6, and one for
 // each level of the tree.
@@ -13,13 +13,13 @@ module sptfra_search_cells #(
     parameter integer COLUMNS = 10,
     // Taxels along y
     parameter integer ROWS = 10,
-    // Taxels that arrive at a time: 4, the members of a quad, or 1
-    parameter integer WAYS = 4,
+    // Taxels that arrive at a time: 4, the images of an orbit, or 1
+    parameter integer CHANNELS = 4,
     // Bits of u_q
     parameter integer DATA_BITS = 27,
-    // Bits of the number of a quad or taxel
+    // Bits of the number of an orbit or taxel
     parameter integer ROW_WIDTH = 5,
-    // Cells, as many for each way
+    // Cells, as many for each channel
     parameter integer CELLS = 16,
     // Taxels of a cell, a power of two
     parameter integer CELL_ELEMENTS = 8,
@@ -30,10 +30,10 @@ module sptfra_search_cells #(
 ) (
     input  wire clock,
     input  wire reset,
-    // Fill: u_q, way 0 in the lowest bits
+    // Fill: u_q, channel 0 in the lowest bits
     input  wire [2:0] u_valid,
     input  wire [ROW_WIDTH-1:0] u_row,
-    input  wire [WAYS*DATA_BITS-1:0] u_values,
+    input  wire [CHANNELS*DATA_BITS-1:0] u_values,
     input  wire fill_bank,
     // Read, of all cells the same place
     input  wire read,
@@ -52,16 +52,16 @@ module sptfra_search_cells #(
     output wire saturated // an alpha or beta in the cycle before
 );
 
-    // Rows: quads, or taxels
-    localparam integer ELEMENTS = (WAYS == 4) ? ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2) : COLUMNS * ROWS;
-    localparam integer GROUPS = CELLS / WAYS;
+    // Rows: orbits, or taxels
+    localparam integer ELEMENTS = (CHANNELS == 4) ? ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2) : COLUMNS * ROWS;
+    localparam integer GROUPS = CELLS / CHANNELS;
     localparam integer LAST_COUNT = ELEMENTS - (GROUPS - 1) * CELL_ELEMENTS;
 
     generate
-        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
-            sptfra_error_ways_must_be_1_or_4 invalid ();
+        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
+            sptfra_error_channels_must_be_1_or_4 invalid ();
         end
-        if ((CELLS % WAYS != 0) || (LAST_COUNT < 1) || (LAST_COUNT > CELL_ELEMENTS)) begin : gen_check_cells
+        if ((CELLS % CHANNELS != 0) || (LAST_COUNT < 1) || (LAST_COUNT > CELL_ELEMENTS)) begin : gen_check_cells
             sptfra_error_cells_do_not_hold_the_taxels invalid ();
         end
     endgenerate
@@ -71,12 +71,12 @@ module sptfra_search_cells #(
     wire [ELEMENT_WIDTH-1:0] fill_element = (CELL_ELEMENTS == 1) ? {ELEMENT_WIDTH{1'b0}} : u_row[ELEMENT_WIDTH-1:0];
     wire [3:0] counts;
 
-    sptfra_members #(
+    sptfra_orbit_images #(
         .COLUMNS   (COLUMNS),
         .ROWS      (ROWS),
         .ROW_WIDTH (ROW_WIDTH)
-    ) members (
-        .quad   (u_row),
+    ) images (
+        .orbit  (u_row),
         .counts (counts)
     );
 
@@ -87,19 +87,19 @@ module sptfra_search_cells #(
     genvar index;
     generate
         for (index = 0; index < CELLS; index = index + 1) begin : gen_cells
-            wire signed [DATA_BITS-1:0] u_member = u_values[DATA_BITS*(index % WAYS) +: DATA_BITS];
-            wire signed [26:0] u_wide = { {(28 - DATA_BITS){u_member[DATA_BITS-1]}}, u_member[DATA_BITS-2:0]};
-            wire signed [26:0] u_value = ((WAYS == 1) || counts[index % WAYS]) ? u_wide : 27'sd0;
+            wire signed [DATA_BITS-1:0] u_image = u_values[DATA_BITS*(index % CHANNELS) +: DATA_BITS];
+            wire signed [26:0] u_wide = { {(28 - DATA_BITS){u_image[DATA_BITS-1]}}, u_image[DATA_BITS-2:0]};
+            wire signed [26:0] u_value = ((CHANNELS == 1) || counts[index % CHANNELS]) ? u_wide : 27'sd0;
 
             sptfra_search_cell #(
                 .CELL_ELEMENTS (CELL_ELEMENTS),
                 .ELEMENT_WIDTH (ELEMENT_WIDTH),
-                .COUNT         ((index / WAYS == GROUPS - 1) ? LAST_COUNT : CELL_ELEMENTS),
+                .COUNT         ((index / CHANNELS == GROUPS - 1) ? LAST_COUNT : CELL_ELEMENTS),
                 .POINTS        (POINTS)
             ) hinges (
                 .clock        (clock),
                 .reset        (reset),
-                .fill         (u_valid & {3{group == index / WAYS}}),
+                .fill         (u_valid & {3{group == index / CHANNELS}}),
                 .fill_bank    (fill_bank),
                 .fill_element (fill_element),
                 .fill_value   (u_value),

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The u_q of two frames by quad: filled as they arrive, read a quad a cycle. One cycle from read_quad to the values.
+// The u_q of two frames by orbit: filled as they arrive, read an orbit a cycle. From read_orbit to the values: 1 cycle.
 //
-// On a centre line of the grid members of a quad coincide: only the first of them counts, the others are zero.
+// On a centre line of the grid images of an orbit coincide: only the first of them counts, the others are zero.
 
 `default_nettype none
 
@@ -14,37 +14,37 @@ module sptfra_taxel_memory #(
     parameter integer ROWS = 10,
     // Bits of u_q
     parameter integer DATA_BITS = 27,
-    // Bits of the number of a quad
+    // Bits of the number of an orbit
     parameter integer ROW_WIDTH = 5
 ) (
     input  wire clock,
-    // u_q of a quad's taxels, member 0 in the lowest bits
+    // u_q of an orbit's taxels, image 0 in the lowest bits
     input  wire [2:0] u_valid, // q, one-hot
     input  wire fill_bank,
-    input  wire [ROW_WIDTH-1:0] u_quad,
+    input  wire [ROW_WIDTH-1:0] u_orbit,
     input  wire [4*DATA_BITS-1:0] u_values,
-    // All of a quad, u_0 in the lowest bits
+    // All of an orbit, u_0 in the lowest bits
     input  wire read_bank,
-    input  wire [ROW_WIDTH-1:0] read_quad,
+    input  wire [ROW_WIDTH-1:0] read_orbit,
     output wire [3*4*27-1:0] read_values
 );
 
     wire [3:0] counts;
     wire [4*27-1:0] wide;
 
-    sptfra_members #(
+    sptfra_orbit_images #(
         .COLUMNS   (COLUMNS),
         .ROWS      (ROWS),
         .ROW_WIDTH (ROW_WIDTH)
-    ) members (
-        .quad   (u_quad),
+    ) images (
+        .orbit  (u_orbit),
         .counts (counts)
     );
 
     genvar index;
 
     generate
-        for (index = 0; index < 4; index = index + 1) begin : gen_members
+        for (index = 0; index < 4; index = index + 1) begin : gen_images
             wire signed [DATA_BITS-1:0] value = u_values[DATA_BITS*index +: DATA_BITS];
 
             assign wide[27*index +: 27] = counts[index]
@@ -58,10 +58,10 @@ module sptfra_taxel_memory #(
             ) of_q (
                 .clock         (clock),
                 .write_enable  (u_valid[index]),
-                .write_address ({fill_bank, u_quad}),
+                .write_address ({fill_bank, u_orbit}),
                 .write_data    (wide),
                 .read_enable   (1'b1),
-                .read_address  ({read_bank, read_quad}),
+                .read_address  ({read_bank, read_orbit}),
                 .read_data     (read_values[4*27*index +: 4*27])
             );
         end

@@ -9,12 +9,12 @@
 `default_nettype none
 
 module sptfra_weight_raster #(
-    // 4: weights come by quads of a folded grid; 1: by taxels
-    parameter WAYS = 4,
+    // 4: weights come by orbits of a folded grid; 1: by taxels
+    parameter CHANNELS = 4,
     // Taxels in x and y
     parameter COLUMNS = 10,
     parameter ROWS = 10,
-    // Bits of |w|, of a quad's or taxel's number, and of a label
+    // Bits of |w|, of an orbit's or taxel's number, and of a label
     parameter DATA_BITS = 27,
     parameter ROW_WIDTH = 5,
     parameter LABEL_WIDTH = 4
@@ -25,7 +25,7 @@ module sptfra_weight_raster #(
     input  wire weights_valid,
     input  wire weights_bank,
     input  wire [ROW_WIDTH-1:0] weights_row,
-    input  wire [WAYS*DATA_BITS-1:0] weights, // member 0 in the lowest bits
+    input  wire [CHANNELS*DATA_BITS-1:0] weights, // image 0 in the lowest bits
     // The frame that passes, held until its last step
     input  wire start,
     input  wire bank,
@@ -74,14 +74,14 @@ module sptfra_weight_raster #(
         end
     end
 
-    // ---- Stages 1 and 2: the weights of its quad. Stage 3: its own. Stage 4: whether it is a seed
+    // ---- Stages 1 and 2: the weights of its orbit. Stage 3: its own. Stage 4: whether it is a seed
     wire [ROW_WIDTH-1:0] element;
-    wire [1:0] member;
+    wire [1:0] image;
     reg [ROW_WIDTH:0] address_1;
-    wire [WAYS*DATA_BITS-1:0] weights_2;
+    wire [CHANNELS*DATA_BITS-1:0] weights_2;
     wire [DATA_BITS-1:0] weight_2;
-    reg [1:0] member_1;
-    reg [1:0] member_2;
+    reg [1:0] image_1;
+    reg [1:0] image_2;
     reg [DATA_BITS-1:0] weight_3;
     reg [DATA_BITS-1:0] weight_4;
     reg [3:1] borders;
@@ -94,7 +94,7 @@ module sptfra_weight_raster #(
     assign fresh = names[3*LABEL_WIDTH +: LABEL_WIDTH];
 
     generate
-        if (WAYS == 4) begin : gen_quads
+        if (CHANNELS == 4) begin : gen_orbits
             sptfra_taxel_walk #(
                 .COLUMNS (COLUMNS),
                 .ROWS    (ROWS)
@@ -103,16 +103,16 @@ module sptfra_weight_raster #(
                 .rewind (start),
                 .step   (walks && !border),
                 .taxels (2'd1),
-                .quad   (element),
-                .member (member)
+                .orbit  (element),
+                .image  (image)
             );
 
-            assign weight_2 = weights_2[DATA_BITS*member_2 +: DATA_BITS];
+            assign weight_2 = weights_2[DATA_BITS*image_2 +: DATA_BITS];
         end else begin : gen_taxels
             reg [ROW_WIDTH-1:0] taxel;
 
             assign element = taxel;
-            assign member = 2'd0;
+            assign image = 2'd0;
             assign weight_2 = weights_2[DATA_BITS-1:0];
 
             always @(posedge clock) begin
@@ -124,12 +124,12 @@ module sptfra_weight_raster #(
                 end
             end
 
-            wire _unused_member = &{1'b0, member_2};
+            wire _unused_image = &{1'b0, image_2};
         end
     endgenerate
 
     sptfra_ram #(
-        .WIDTH         (WAYS * DATA_BITS),
+        .WIDTH         (CHANNELS * DATA_BITS),
         .DEPTH         (2 << ROW_WIDTH),
         .ADDRESS_WIDTH (ROW_WIDTH + 1)
     ) frames (
@@ -144,8 +144,8 @@ module sptfra_weight_raster #(
 
     always @(posedge clock) begin
         address_1 <= {bank, element};
-        member_1 <= member;
-        member_2 <= member_1;
+        image_1 <= image;
+        image_2 <= image_1;
         weight_3 <= weight_2;
         weight_4 <= weight_3;
         weight <= weight_4;

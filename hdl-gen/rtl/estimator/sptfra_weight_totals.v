@@ -3,17 +3,17 @@
 //
 // The sum of a frame's |w|, and the largest, as the weights come. From the last of them: 4 cycles.
 //
-// On a centre line of the grid members of a quad are the same taxel, which counts once.
+// On a centre line of the grid images of an orbit are the same taxel, which counts once.
 
 `default_nettype none
 
 module sptfra_weight_totals #(
-    // 4: weights come by quads of a folded grid; 1: by taxels
-    parameter WAYS = 4,
+    // 4: weights come by orbits of a folded grid; 1: by taxels
+    parameter CHANNELS = 4,
     // Taxels in x and y
     parameter COLUMNS = 10,
     parameter ROWS = 10,
-    // Bits of |w|, of their sum, and of a quad's or taxel's number
+    // Bits of |w|, of their sum, and of an orbit's or taxel's number
     parameter DATA_BITS = 27,
     parameter SUM_BITS = 34,
     parameter ROW_WIDTH = 5
@@ -25,7 +25,7 @@ module sptfra_weight_totals #(
     input  wire first, // of a frame
     input  wire last,
     input  wire [ROW_WIDTH-1:0] row,
-    input  wire [WAYS*DATA_BITS-1:0] weights, // member 0 in the lowest bits
+    input  wire [CHANNELS*DATA_BITS-1:0] weights, // image 0 in the lowest bits
     // Totals
     output wire there, // one cycle; they hold until the next frame's first
     output reg  [SUM_BITS-1:0] total,
@@ -41,7 +41,7 @@ module sptfra_weight_totals #(
     reg [3:1] valids;
     reg [3:1] firsts;
     reg [4:1] lasts;
-    wire [DATA_BITS+1:0] sum_3; // of the members
+    wire [DATA_BITS+1:0] sum_3; // of the images
     wire [DATA_BITS-1:0] largest_3;
 
     assign there = lasts[4];
@@ -62,12 +62,12 @@ module sptfra_weight_totals #(
     end
 
     generate
-        if (WAYS == 4) begin : gen_quads
+        if (CHANNELS == 4) begin : gen_orbits
             // ---- Stage 1: what counts. Stage 2: two and two. Stage 3: all four
             wire [3:0] counts;
             reg [3:0] counts_1;
             reg [4*DATA_BITS-1:0] weights_1;
-            wire [DATA_BITS-1:0] member_1 [0:3];
+            wire [DATA_BITS-1:0] image_1 [0:3];
             wire [DATA_BITS-1:0] own_1 [0:3];
             reg [DATA_BITS:0] left_2;
             reg [DATA_BITS:0] right_2;
@@ -77,18 +77,18 @@ module sptfra_weight_totals #(
             reg [DATA_BITS-1:0] larger_3;
             genvar index;
 
-            sptfra_members #(
+            sptfra_orbit_images #(
                 .COLUMNS   (COLUMNS),
                 .ROWS      (ROWS),
                 .ROW_WIDTH (ROW_WIDTH)
-            ) members (
-                .quad   (row),
+            ) images (
+                .orbit  (row),
                 .counts (counts)
             );
 
-            for (index = 0; index < 4; index = index + 1) begin : gen_members
-                assign member_1[index] = weights_1[DATA_BITS*index +: DATA_BITS];
-                assign own_1[index] = counts_1[index] ? member_1[index] : {DATA_BITS{1'b0}};
+            for (index = 0; index < 4; index = index + 1) begin : gen_images
+                assign image_1[index] = weights_1[DATA_BITS*index +: DATA_BITS];
+                assign own_1[index] = counts_1[index] ? image_1[index] : {DATA_BITS{1'b0}};
             end
 
             assign sum_3 = all_3;
@@ -99,8 +99,8 @@ module sptfra_weight_totals #(
                 weights_1 <= weights;
                 left_2 <= {1'b0, own_1[0]} + {1'b0, own_1[1]};
                 right_2 <= {1'b0, own_1[2]} + {1'b0, own_1[3]};
-                larger_left_2 <= (member_1[0] > member_1[1]) ? member_1[0] : member_1[1];
-                larger_right_2 <= (member_1[2] > member_1[3]) ? member_1[2] : member_1[3];
+                larger_left_2 <= (image_1[0] > image_1[1]) ? image_1[0] : image_1[1];
+                larger_right_2 <= (image_1[2] > image_1[3]) ? image_1[2] : image_1[3];
                 all_3 <= {1'b0, left_2} + {1'b0, right_2};
                 larger_3 <= (larger_left_2 > larger_right_2) ? larger_left_2 : larger_right_2;
             end

@@ -5,7 +5,7 @@
 //
 //     0: a + b + c + d    1: a - b + c - d    2: a + b - c - d    3: a - b - c + d
 //
-// Folds the taxels of a quad into parity classes, and unfolds the classes into four times the taxels.
+// Folds the taxels of an orbit into parity components, and unfolds the components into four times the taxels.
 //
 // Latency: two enabled cycles.
 

@@ -16,7 +16,7 @@ module sptfra_bz #(
     // Samples of a beat: 1, 2, 4 or 8; one where a frame is corrected or CALIBRATED
     parameter SAMPLES = 1,
     // As of sptfra_frame_writer
-    parameter WAYS = 4,
+    parameter CHANNELS = 4,
     parameter DATA_BITS = 27,
     parameter SCALED = 0,
     // As of sptfra_samples
@@ -56,7 +56,7 @@ module sptfra_bz #(
     parameter EXPECTED_STAGES = 0,
     // Derived
     parameter SAMPLE_BITS = (SAMPLE == 0) ? 32 : 16,
-    parameter ELEMENTS = (WAYS == 1) ? COLUMNS * ROWS : ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
+    parameter ELEMENTS = (CHANNELS == 1) ? COLUMNS * ROWS : ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
     parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
     parameter TAXELS = COLUMNS * ROWS,
     parameter TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1,
@@ -71,12 +71,12 @@ module sptfra_bz #(
     input  wire s_tlast,
     input  wire s_tvalid,
     output wire s_tready,
-    // Operand memories, class 0 in the lowest bits
+    // Operand memories, component 0 in the lowest bits
     output wire write_valid,
     input  wire write_ready,
     output wire write_bank,
     output wire [ROW_WIDTH-1:0] write_row,
-    output wire [WAYS*DATA_BITS-1:0] write_data,
+    output wire [CHANNELS*DATA_BITS-1:0] write_data,
     // To CeAn: each stress, then the frame's flags
     input  wire cean_idle,
     input  wire direction_room, // in CeAn, for another frame
@@ -305,7 +305,7 @@ module sptfra_bz #(
         .COLUMNS           (COLUMNS),
         .ROWS              (ROWS),
         .SAMPLES           (SAMPLES),
-        .WAYS              (WAYS),
+        .CHANNELS          (CHANNELS),
         .DATA_BITS         (DATA_BITS),
         .STRESS_BOUND      (STRESS_BOUND),
         .SCALED            (SCALED),

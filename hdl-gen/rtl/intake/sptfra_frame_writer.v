@@ -13,8 +13,8 @@ module sptfra_frame_writer #(
     parameter COLUMNS = 10,
     parameter ROWS = 10,
     parameter SAMPLES = 1,
-    // 4: folded into parity classes; 1: as they are
-    parameter WAYS = 4,
+    // 4: folded into parity components; 1: as they are
+    parameter CHANNELS = 4,
     // Bits of a stress, 27 at most, and of what the lanes read: as many, or 29 and more where taxels are folded
     parameter DATA_BITS = 27,
     // Full scale, in steps of the stress
@@ -40,7 +40,7 @@ module sptfra_frame_writer #(
     parameter TAXELS = COLUMNS * ROWS,
     parameter TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1,
     parameter PLACES = (REPLACEABLE != 0) ? REPLACEABLE : 1,
-    parameter ELEMENTS = (WAYS == 1) ? COLUMNS * ROWS : ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
+    parameter ELEMENTS = (CHANNELS == 1) ? COLUMNS * ROWS : ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
     parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3
 ) (
     input  wire clock,
@@ -58,12 +58,12 @@ module sptfra_frame_writer #(
     input  wire [3:0] smoothing, // see sptfra_smoothing
     output wire replace_busy, // from a frame's last beat in to its last stress out
     output wire busy, // a frame's last stress has come, and not all that is made of it
-    // Operand memories, class 0 in the lowest bits
+    // Operand memories, component 0 in the lowest bits
     output wire write_valid,
     input  wire write_ready,
     output wire write_bank,
     output wire [ROW_WIDTH-1:0] write_row,
-    output wire [WAYS*DATA_BITS-1:0] write_data,
+    output wire [CHANNELS*DATA_BITS-1:0] write_data,
     // To CeAn: each stress, then the frame's flags
     output wire stress_valid,
     output wire signed [26:0] stress,
@@ -92,7 +92,7 @@ module sptfra_frame_writer #(
         if ((SAMPLES != 1) && (SAMPLES != 2) && (SAMPLES != 4) && (SAMPLES != 8)) begin : gen_check_samples
             sptfra_error_samples_of_a_beat_must_be_1_2_4_or_8 invalid ();
         end
-        if ((DATA_BITS < 16) || (DATA_BITS > ((WAYS == 4) ? 35 : 27))) begin : gen_check_data
+        if ((DATA_BITS < 16) || (DATA_BITS > ((CHANNELS == 4) ? 35 : 27))) begin : gen_check_data
             sptfra_error_data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded invalid ();
         end
     endgenerate
@@ -299,7 +299,7 @@ module sptfra_frame_writer #(
         end
     endgenerate
 
-    // ---- To the lanes, quad by quad
+    // ---- To the lanes, orbit by orbit
     wire frame_written;
 
     sptfra_fold #(
@@ -307,7 +307,7 @@ module sptfra_frame_writer #(
         .ROWS        (ROWS),
         .SAMPLES     (SAMPLES),
         .CANDIDATES  (CANDIDATES),
-        .WAYS        (WAYS),
+        .CHANNELS    (CHANNELS),
         .STRESS_BITS (STRESS_BITS),
         .DATA_BITS   (DATA_BITS),
         .SCALED      (SCALED)

@@ -27,7 +27,7 @@ module sptfra_taxel_stream #(
     input  wire [COUNT_WIDTH-1:0] beat, // which it is
     input  wire [WIDTH*SAMPLES-1:0] stresses,
     input  wire ends, // the frame ends, with its last beat or after it
-    input  wire whole, // all taxels may have their turn
+    input  wire whole, // all taxels may be read
     input  wire restart, // with the next frame
     // Taxels
     output wire stress_valid,
@@ -48,19 +48,19 @@ module sptfra_taxel_stream #(
             localparam SAMPLE_WIDTH = $clog2(SAMPLES);
             localparam INDEX_WIDTH = BEAT_WIDTH + SAMPLE_WIDTH;
             localparam [31:0] LAST_WIDE = TAXELS - 1;
-            localparam TURN_TO_STRESS = 2; // of the memory
+            localparam READ_TO_STRESS = 2; // of the memory
             reg [INDEX_WIDTH-1:0] taxel;
             reg all_shown;
-            reg [TURN_TO_STRESS:1] shows;
-            reg [TURN_TO_STRESS:1] shows_last;
+            reg [READ_TO_STRESS:1] shows;
+            reg [READ_TO_STRESS:1] shows_last;
             wire last_taxel = (taxel == LAST_WIDE[INDEX_WIDTH-1:0]);
             wire [31:0] beat_needed = {{(32-BEAT_WIDTH){1'b0}}, taxel[SAMPLE_WIDTH +: BEAT_WIDTH]};
             wire show = (whole || ((KEPT == 0) && !last_taxel && (beat_needed < beat_wide))) && !all_shown;
             wire [WIDTH-1:0] kept;
 
-            assign stress_valid = shows[TURN_TO_STRESS];
+            assign stress_valid = shows[READ_TO_STRESS];
             assign stress = kept;
-            assign done = shows_last[TURN_TO_STRESS];
+            assign done = shows_last[READ_TO_STRESS];
 
             sptfra_frame_memory #(
                 .SAMPLES (SAMPLES),

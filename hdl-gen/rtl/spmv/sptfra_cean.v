@@ -202,7 +202,7 @@ module sptfra_cean #(
         end
     endgenerate
 
-    // ---- Two places for finished frames: never full, since Bz asks first
+    // ---- Two buffers for finished frames: never full, since Bz asks first
     wire no_tension = (TENSION_READ != 0) && !pulled;
     wire [167:0] pushed = {push_x, push_y, no_push, sum, most, edge_sum, no_tension, guessed, below_floor, faults};
     reg [167:0] waiting_0;

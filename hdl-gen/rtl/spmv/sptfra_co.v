@@ -11,9 +11,9 @@
 `default_nettype none
 
 module sptfra_co #(
-    // 4: parity classes; 1: taxels
-    parameter WAYS = 4,
-    // Elements of a vector: taxels, or quads of a folded grid
+    // 4: parity components; 1: taxels
+    parameter CHANNELS = 4,
+    // Elements of a vector: taxels, or orbits of a folded grid
     parameter ELEMENTS = 25,
     // Bits of a value
     parameter DATA_BITS = 27,
@@ -35,17 +35,17 @@ module sptfra_co #(
     input  wire clock,
     input  wire reset,
     // Result bus
-    input  wire [8:0] result_g, // of taxels g_pq at 3 (p - 1) + q, of classes their sums at 0
-    input  wire [3:0] result_kept, // of taxels A_p b at p - 1, of classes r, r2, r1, r0
+    input  wire [8:0] result_g, // of taxels g_pq at 3 (p - 1) + q, of components their sums at 0
+    input  wire [3:0] result_kept, // of taxels A_p b at p - 1, of components r, r2, r1, r0
     input  wire [ROW_WIDTH-1:0] result_row,
-    input  wire [WAYS*DATA_BITS-1:0] result_value,
+    input  wire [CHANNELS*DATA_BITS-1:0] result_value,
     // Operand memories
     input  wire bank, // of the frame's stress
     input  wire residual_bank, // of the residual
     output wire write_next, // write_valid of the next cycle
     output wire write_valid,
     output wire [OPERAND_WIDTH-1:0] write_address,
-    output wire [WAYS*DATA_BITS-1:0] write_data,
+    output wire [CHANNELS*DATA_BITS-1:0] write_data,
     // Coefficient vectors, to the field: g_pq of component 3 i + p - 1
     output wire [2:0] g_valid, // of q
     output wire [COMPONENT_WIDTH-1:0] g_component,
@@ -58,8 +58,8 @@ module sptfra_co #(
 );
 
     generate
-        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
-            sptfra_error_ways_must_be_1_or_4 invalid ();
+        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
+            sptfra_error_channels_must_be_1_or_4 invalid ();
         end
     endgenerate
 
@@ -77,21 +77,21 @@ module sptfra_co #(
     end
 
     // ---- Cycles from the result bus, which simulations check: to the write of an operand, to all sums being complete
-    localparam WRITE_LATENCY = (WAYS == 4) ? 1 : 3;
+    localparam WRITE_LATENCY = (CHANNELS == 4) ? 1 : 3;
 
     sptfra_check_delay #(
         .CYCLES (WRITE_LATENCY)
     ) check_write (
         .clock (clock),
         .reset (reset),
-        .start ((WAYS == 4) ? (result_kept != 4'd0) : (result_g[8:6] != 3'd0)),
+        .start ((CHANNELS == 4) ? (result_kept != 4'd0) : (result_g[8:6] != 3'd0)),
         .done  (write_valid)
     );
 
 `ifdef SIMULATION
-    localparam SUMS_LATENCY = (WAYS == 4) ? 2 : 7;
+    localparam SUMS_LATENCY = (CHANNELS == 4) ? 2 : 7;
     // The last of a frame's results that add up to sums
-    localparam integer SUMMANDS = (WAYS == 4) ? 7 : 9 * ELEMENTS;
+    localparam integer SUMMANDS = (CHANNELS == 4) ? 7 : 9 * ELEMENTS;
     integer summands;
     wire summand = (result_g != 9'd0);
     wire last_summand = summand && (summands == SUMMANDS - 1);
@@ -119,9 +119,9 @@ module sptfra_co #(
 `endif
 
     generate
-        if (WAYS == 4) begin : gen_folded
-            // ---- Sums: row q has G_pq, and T_z's, in the class on which it depends, row 4 + q those of T_x and T_y;
-            // row 3 what the weights take from F_z, T_x and T_y
+        if (CHANNELS == 4) begin : gen_folded
+            // ---- Sums: row q has G_pq, and T_z's, in the component on which it depends, row 4 + q those of T_x and
+            // T_y; row 3 what the weights take from F_z, T_x and T_y
             reg [2:0] sums_count;
             // A register on the way from the result bus
             reg sum_valid;
@@ -153,10 +153,10 @@ module sptfra_co #(
             wire [DATA_BITS-1:0] value_1 = sum_value[DATA_BITS*1 +: DATA_BITS];
             wire [DATA_BITS-1:0] value_2 = sum_value[DATA_BITS*2 +: DATA_BITS];
             wire [DATA_BITS-1:0] value_3 = sum_value[DATA_BITS*3 +: DATA_BITS];
-            wire signed [39:0] class_0 = {{(40-DATA_BITS){value_0[DATA_BITS-1]}}, value_0};
-            wire signed [39:0] class_1 = {{(40-DATA_BITS){value_1[DATA_BITS-1]}}, value_1};
-            wire signed [39:0] class_2 = {{(40-DATA_BITS){value_2[DATA_BITS-1]}}, value_2};
-            wire signed [39:0] class_3 = {{(40-DATA_BITS){value_3[DATA_BITS-1]}}, value_3};
+            wire signed [39:0] component_0 = {{(40-DATA_BITS){value_0[DATA_BITS-1]}}, value_0};
+            wire signed [39:0] component_1 = {{(40-DATA_BITS){value_1[DATA_BITS-1]}}, value_1};
+            wire signed [39:0] component_2 = {{(40-DATA_BITS){value_2[DATA_BITS-1]}}, value_2};
+            wire signed [39:0] component_3 = {{(40-DATA_BITS){value_3[DATA_BITS-1]}}, value_3};
 
             assign sums_there = sum_valid && (sums_count == 3'd6);
             // Those of f_z for q = 0 less the weights themselves
@@ -173,39 +173,39 @@ module sptfra_co #(
                     sums_count <= (sums_count == 3'd6) ? 3'd0 : sums_count + 3'd1;
                     case (sum_row)
                         3'd0: begin
-                            g_0 <= class_1;
-                            g_3 <= class_2;
-                            g_6 <= class_0;
-                            t_z0 <= class_3;
+                            g_0 <= component_1;
+                            g_3 <= component_2;
+                            g_6 <= component_0;
+                            t_z0 <= component_3;
                         end
                         3'd1: begin
-                            g_1 <= class_0;
-                            g_4 <= class_3;
-                            g_7 <= class_1;
-                            t_z1 <= class_2;
+                            g_1 <= component_0;
+                            g_4 <= component_3;
+                            g_7 <= component_1;
+                            t_z1 <= component_2;
                         end
                         3'd2: begin
-                            g_2 <= class_3;
-                            g_5 <= class_0;
-                            g_8 <= class_2;
-                            t_z2 <= class_1;
+                            g_2 <= component_3;
+                            g_5 <= component_0;
+                            g_8 <= component_2;
+                            t_z2 <= component_1;
                         end
                         3'd3: begin
-                            share_z <= class_0;
-                            share_tx <= class_2;
-                            share_ty <= class_1;
+                            share_z <= component_0;
+                            share_tx <= component_2;
+                            share_ty <= component_1;
                         end
                         3'd4: begin
-                            t_x0 <= class_2;
-                            t_y0 <= class_1;
+                            t_x0 <= component_2;
+                            t_y0 <= component_1;
                         end
                         3'd5: begin
-                            t_x1 <= class_3;
-                            t_y1 <= class_0;
+                            t_x1 <= component_3;
+                            t_y1 <= component_0;
                         end
                         default: begin
-                            t_x2 <= class_0;
-                            t_y2 <= class_3;
+                            t_x2 <= component_0;
+                            t_y2 <= component_3;
                         end
                     endcase
                 end

@@ -3,8 +3,8 @@
 //
 // The field memory where taxels are not folded, and the forces as they leave it: f_p = g_p0 + mu_x g_p1 + mu_y g_p2.
 //
-// Two frames of the nine coefficient vectors, taxel by taxel, component after component, dealt to as many memories as
-// a beat has words. From step to forces: 6 cycles.
+// Two frames of the nine coefficient vectors, taxel by taxel, component after component, in as many memories as a beat
+// has words. From step to forces: 6 cycles.
 
 `default_nettype none
 

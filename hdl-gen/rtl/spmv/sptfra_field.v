@@ -4,7 +4,7 @@
 // Field memory of a folded grid, with the forces f = A+ r + [mu_x |w|, mu_y |w|, -|w|] of every taxel at its output.
 // WORDS components leave it a cycle in the order of the output: x, y, z, taxel by taxel.
 //
-// It is written a quad at a time. It holds A_p r of two frames, and |w| of four: |w| comes long before its use. Up to
+// It is written an orbit at a time. It holds A_p r of two frames, and |w| of four: |w| comes long before its use. Up to
 // four components belong to two neighbours at most; each has a copy of the memory. From step to forces: 6 cycles,
 // with several words 7.
 
@@ -22,8 +22,8 @@ module sptfra_field #(
     parameter FORCE_SHIFT = 0,
     parameter SHARE_SHIFT = 0,
     // Derived
-    parameter QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
-    parameter ROW_WIDTH = (QUADS > 8) ? $clog2(QUADS) : 3
+    parameter ORBITS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
+    parameter ROW_WIDTH = (ORBITS > 8) ? $clog2(ORBITS) : 3
 ) (
     input  wire clock,
     input  wire reset,
@@ -64,8 +64,8 @@ module sptfra_field #(
     localparam PRODUCT_BITS = FACTOR_BITS + 18;
     localparam TAXELS = (WORDS > 1) ? 2 : 1; // read in a cycle
     localparam FORCES = (WORDS > 1) ? 3 : 1; // components of a taxel that are read in a cycle
-    localparam BANK = (3 / FORCES) * QUADS; // one memory holds the components that do not leave together
-    localparam [31:0] LENGTH = (FORCES == 1) ? QUADS : 0; // from component to component
+    localparam BANK = (3 / FORCES) * ORBITS; // one memory holds the components that do not leave together
+    localparam [31:0] LENGTH = (FORCES == 1) ? ORBITS : 0; // from component to component
     localparam [31:0] SECOND_BANK = BANK;
     localparam FORCE_WIDTH = $clog2(2 * BANK);
     localparam signed [17:0] ONE = 18'sd65536; // friction has 16 fraction bits
@@ -123,7 +123,7 @@ module sptfra_field #(
         end
     end
 
-    // ---- Stages 1 to 4: the taxel of the first component, and the one after it. A memory for each member of the quads
+    // ---- Stages 1 to 4: the taxel of the first component, and the one after it. A memory for each image of the orbits
     wire [31:0] write_part = taxel_force[0] ? 0 : taxel_force[1] ? LENGTH : 2 * LENGTH;
     wire [31:0] write_row = {{(32-ROW_WIDTH){1'b0}}, taxel_row};
     wire [31:0] write_place = (fill_bank ? SECOND_BANK : 0) + write_part + write_row;
@@ -136,14 +136,14 @@ module sptfra_field #(
     genvar p_index;
     generate
         for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_taxels
-            wire [ROW_WIDTH-1:0] quad;
-            wire [1:0] member;
-            wire [31:0] read_place = read_base + {{(32-ROW_WIDTH){1'b0}}, quad};
+            wire [ROW_WIDTH-1:0] orbit;
+            wire [1:0] image;
+            wire [31:0] read_place = read_base + {{(32-ROW_WIDTH){1'b0}}, orbit};
             reg [FORCE_WIDTH-1:0] force_address_1;
             reg [ROW_WIDTH+1:0] weight_address_1;
-            reg [1:0] member_1;
-            reg [1:0] member_2;
-            reg [1:0] member_3;
+            reg [1:0] image_1;
+            reg [1:0] image_2;
+            reg [1:0] image_3;
             wire [4*DATA_BITS-1:0] weights_2;
             reg [4*DATA_BITS-1:0] weights_3;
             reg [DATA_BITS-1:0] chosen_4;
@@ -159,19 +159,19 @@ module sptfra_field #(
                 .rewind (rewind),
                 .step   (step),
                 .taxels (moves),
-                .quad   (quad),
-                .member (member)
+                .orbit  (orbit),
+                .image  (image)
             );
 
             always @(posedge clock) begin
                 if (enable) begin
                     force_address_1 <= read_place[FORCE_WIDTH-1:0];
-                    weight_address_1 <= {weight_read_bank, quad};
-                    member_1 <= member;
-                    member_2 <= member_1;
-                    member_3 <= member_2;
+                    weight_address_1 <= {weight_read_bank, orbit};
+                    image_1 <= image;
+                    image_2 <= image_1;
+                    image_3 <= image_2;
                     weights_3 <= weights_2;
-                    chosen_4 <= weights_3[DATA_BITS*member_3 +: DATA_BITS];
+                    chosen_4 <= weights_3[DATA_BITS*image_3 +: DATA_BITS];
                 end
             end
 
@@ -180,7 +180,7 @@ module sptfra_field #(
                     .WIDTH         (DATA_BITS),
                     .DEPTH         (4 << ROW_WIDTH),
                     .ADDRESS_WIDTH (ROW_WIDTH + 2)
-                ) quad_weights (
+                ) orbit_weights (
                     .clock         (clock),
                     .write_enable  (weights_valid),
                     .write_address ({weight_fill_bank, weights_row}),
@@ -201,16 +201,16 @@ module sptfra_field #(
                 always @(posedge clock) begin
                     if (enable) begin
                         forces_3 <= forces_2;
-                        force_4 <= forces_3[DATA_BITS*member_3 +: DATA_BITS];
+                        force_4 <= forces_3[DATA_BITS*image_3 +: DATA_BITS];
                     end
                 end
 
-                for (index = 0; index < 4; index = index + 1) begin : gen_members
+                for (index = 0; index < 4; index = index + 1) begin : gen_images
                     sptfra_ram #(
                         .WIDTH         (DATA_BITS),
                         .DEPTH         (2 * BANK),
                         .ADDRESS_WIDTH (FORCE_WIDTH)
-                    ) quad_forces (
+                    ) orbit_forces (
                         .clock         (clock),
                         .write_enable  ((FORCES == 1) ? is_force : taxel_force[p_index]),
                         .write_address (write_place[FORCE_WIDTH-1:0]),

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The array of SpMV lanes that We, Co and Op share, with its sequencer and its collector.
+// The array of SpMV PEs that We, Co and Op share, with its sequencer and its collector.
 //
-// From the sequencer to the lanes there is one register; so is there from the write port to the operand memories.
+// From the sequencer to the PEs there is one register; so is there from the write port to the operand memories.
 
 `default_nettype none
 
 module sptfra_spmv_array #(
-    // Lanes, and multiply-accumulates of each in a cycle: 1, or 4 parity classes
-    parameter LANES = 4,
-    parameter WAYS = 4,
+    // PEs, and multiply-accumulates of each in a cycle: 1, or 4 parity components
+    parameter PES = 4,
+    parameter CHANNELS = 4,
     // Bits of a coefficient, at most 27, and of an operand, at most 35
     parameter COEFFICIENT_BITS = 18,
     parameter DATA_BITS = 27,
-    // Elements of a vector: taxels, or quads of a folded grid
+    // Elements of a vector: taxels, or orbits of a folded grid
     parameter ELEMENTS = 25,
     // Vectors that a product reads side by side, at most
     parameter VECTORS = 3,
-    // Words of the lanes' ROMs and operand memories, and of the visit ROM
+    // Words of the PEs' ROMs and operand memories, and of the ROM of write-back slots
     parameter WORD_DEPTH = 512,
     parameter SEGMENT_DEPTH = 64,
     parameter OPERAND_DEPTH = 200,
-    parameter VISIT_DEPTH = 200,
-    // Quads along a side of a grid of which some products are mirrored at the diagonal; 0: none is
+    parameter SLOT_DEPTH = 200,
+    // Orbits along a side of a grid of which some products are mirrored at the diagonal; 0: none is
     parameter MIRROR_SIDE = 0,
     // Products of all programs: see sptfra_spmv_sequencer
     parameter PRODUCTS = 2,
@@ -42,7 +42,7 @@ module sptfra_spmv_array #(
     parameter [PROGRAMS*8-1:0] FIRSTS = {(PROGRAMS*8){1'b0}},
     parameter [PROGRAMS*32-1:0] START_WORDS = {(PROGRAMS*32){1'b0}},
     parameter [PROGRAMS*16-1:0] START_SEGMENTS = {(PROGRAMS*16){1'b0}},
-    parameter [PROGRAMS*32-1:0] START_VISITS = {(PROGRAMS*32){1'b0}},
+    parameter [PROGRAMS*32-1:0] START_SLOTS = {(PROGRAMS*32){1'b0}},
     // Results: see sptfra_spmv_collector
     parameter AHEAD = 0,
     parameter DESTINATION_BITS = 4,
@@ -50,16 +50,16 @@ module sptfra_spmv_array #(
     // Prefix of the ROM file names, for instance a directory with its slash, and what they begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
-    // Characters of each lane's number in its files' names, lane 0 in the lowest bits
+    // Characters of each PE's number in its files' names, PE 0 in the lowest bits
     parameter NUMBER_BITS = 16,
-    parameter [NUMBER_BITS*LANES-1:0] LANE_NUMBERS = {(NUMBER_BITS*LANES){1'b0}},
+    parameter [NUMBER_BITS*PES-1:0] PE_NUMBERS = {(NUMBER_BITS*PES){1'b0}},
     // Derived
     parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
     parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1
 ) (
     input  wire clock,
     input  wire reset,
-    // Turns
+    // Program scheduler
     input  wire [PROGRAMS-1:0] start, // of the programs, one at a time
     output wire issued, // with the last issue of a program
     input  wire bank, // of the stress of the frame whose weights are computed
@@ -70,38 +70,38 @@ module sptfra_spmv_array #(
     // Operand memories
     input  wire write_enable,
     input  wire [OPERAND_WIDTH-1:0] write_address,
-    input  wire [WAYS*DATA_BITS-1:0] write_data,
+    input  wire [CHANNELS*DATA_BITS-1:0] write_data,
     // Result bus: of these one bit with each result, none without
     output wire result_y,
-    output wire [2:0] result_u, // of classes without the stress, which is added to u0
-    output wire [8:0] result_g, // of taxels g_pq at 3 (p - 1) + q, of classes their sums over the frame at 0
-    output wire [3:0] result_kept, // of taxels A_p b at p - 1, of classes what is left of the stress: r, r2, r1, r0
-    output wire [2:0] result_force, // of classes A_p r, the field
+    output wire [2:0] result_u, // of components without the stress, which is added to u0
+    output wire [8:0] result_g, // of taxels g_pq at 3 (p - 1) + q, of components their sums over the frame at 0
+    output wire [3:0] result_kept, // of taxels A_p b at p - 1, of components what is left of the stress: r, r2, r1, r0
+    output wire [2:0] result_force, // of components A_p r, the field
     output wire [ROW_WIDTH-1:0] result_row,
-    output wire [WAYS*DATA_BITS-1:0] result_value, // class 0 in the lowest bits
+    output wire [CHANNELS*DATA_BITS-1:0] result_value, // component 0 in the lowest bits
     output wire result_last // of its program
 );
 
     generate
-        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
-            sptfra_error_ways_must_be_1_or_4 invalid ();
+        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
+            sptfra_error_channels_must_be_1_or_4 invalid ();
         end
-        if ((LANES < 1) || (LANES > 128)) begin : gen_check_lanes
-            sptfra_error_lanes_must_be_1_to_128 invalid ();
+        if ((PES < 1) || (PES > 128)) begin : gen_check_pes
+            sptfra_error_pes_must_be_1_to_128 invalid ();
         end
         if ((DESTINATION_BITS != 3) && (DESTINATION_BITS != 4)) begin : gen_check_destinations
             sptfra_error_a_destination_has_3_or_4_bits invalid ();
         end
     endgenerate
     localparam WORD_WIDTH = (WORD_DEPTH > 2) ? $clog2(WORD_DEPTH) : 1;
-    localparam VISIT_WIDTH = (VISIT_DEPTH > 2) ? $clog2(VISIT_DEPTH) : 1;
+    localparam SLOT_WIDTH = (SLOT_DEPTH > 2) ? $clog2(SLOT_DEPTH) : 1;
 
-    // ---- From the sequencer; one register on the way to the lanes
+    // ---- From the sequencer; one register on the way to the PEs
     wire next_restart;
     wire [WORD_WIDTH-1:0] next_start_word;
     wire next_restart_segment;
     wire [15:0] next_start_segment;
-    wire [VISIT_WIDTH-1:0] next_start_visit;
+    wire [SLOT_WIDTH-1:0] next_start_slot;
     wire next_issue;
     wire next_mark;
     wire next_rewind;
@@ -112,7 +112,7 @@ module sptfra_spmv_array #(
     reg  [WORD_WIDTH-1:0] start_word;
     reg  restart_segment;
     reg  [15:0] start_segment;
-    reg  [VISIT_WIDTH-1:0] start_visit;
+    reg  [SLOT_WIDTH-1:0] start_slot;
     reg  issue;
     reg  mark;
     reg  rewind;
@@ -125,7 +125,7 @@ module sptfra_spmv_array #(
         start_word <= next_start_word;
         restart_segment <= next_restart_segment;
         start_segment <= next_start_segment;
-        start_visit <= next_start_visit;
+        start_slot <= next_start_slot;
         issue <= next_issue;
         mark <= next_mark;
         rewind <= next_rewind;
@@ -145,7 +145,7 @@ module sptfra_spmv_array #(
         .ELEMENTS       (ELEMENTS),
         .WORD_DEPTH     (WORD_DEPTH),
         .OPERAND_DEPTH  (OPERAND_DEPTH),
-        .VISIT_DEPTH    (VISIT_DEPTH),
+        .SLOT_DEPTH     (SLOT_DEPTH),
         .PRODUCTS       (PRODUCTS),
         .COUNT_BITS     (COUNT_BITS),
         .LENGTHS        (LENGTHS),
@@ -162,7 +162,7 @@ module sptfra_spmv_array #(
         .FIRSTS         (FIRSTS),
         .START_WORDS    (START_WORDS),
         .START_SEGMENTS (START_SEGMENTS),
-        .START_VISITS   (START_VISITS)
+        .START_SLOTS    (START_SLOTS)
     ) sequencer (
         .clock           (clock),
         .reset           (reset),
@@ -174,7 +174,7 @@ module sptfra_spmv_array #(
         .start_word      (next_start_word),
         .restart_segment (next_restart_segment),
         .start_segment   (next_start_segment),
-        .start_visit     (next_start_visit),
+        .start_slot      (next_start_slot),
         .issue           (next_issue),
         .mark            (next_mark),
         .rewind          (next_rewind),
@@ -186,7 +186,7 @@ module sptfra_spmv_array #(
     // ---- One register on the way to the operand memories
     reg operand_write;
     reg [OPERAND_WIDTH-1:0] operand_address;
-    reg [WAYS*DATA_BITS-1:0] operand_data;
+    reg [CHANNELS*DATA_BITS-1:0] operand_data;
 
     always @(posedge clock) begin
         operand_write <= write_enable;
@@ -197,20 +197,20 @@ module sptfra_spmv_array #(
         end
     end
 
-    // ---- Lanes
-    wire [48*WAYS*LANES-1:0] results;
-    wire [48*WAYS*LANES-1:0] carries;
-    wire [LANES-1:0] pending;
-    wire [LANES-1:0] take;
+    // ---- PEs
+    wire [48*CHANNELS*PES-1:0] results;
+    wire [48*CHANNELS*PES-1:0] carries;
+    wire [PES-1:0] pending;
+    wire [PES-1:0] take;
 
     genvar index;
     generate
-        for (index = 0; index < LANES; index = index + 1) begin : gen_lanes
-            localparam [NUMBER_BITS-1:0] NUMBER = LANE_NUMBERS[NUMBER_BITS*index +: NUMBER_BITS];
-            localparam [7:0] NEXT = (index + 1) % LANES;
+        for (index = 0; index < PES; index = index + 1) begin : gen_pes
+            localparam [NUMBER_BITS-1:0] NUMBER = PE_NUMBERS[NUMBER_BITS*index +: NUMBER_BITS];
+            localparam [7:0] NEXT = (index + 1) % PES;
 
-            sptfra_spmv_lane #(
-                .WAYS             (WAYS),
+            sptfra_spmv_pe #(
+                .CHANNELS         (CHANNELS),
                 .COEFFICIENT_BITS (COEFFICIENT_BITS),
                 .DATA_BITS        (DATA_BITS),
                 .ELEMENTS         (ELEMENTS),
@@ -221,10 +221,10 @@ module sptfra_spmv_array #(
                 .MIRROR_SIDE      (MIRROR_SIDE),
                 .FRICTION         (FRICTIONS != {PRODUCTS{1'b0}}),
                 .ROM_DIR          (ROM_DIR),
-                .VALUES_FILE      ((ROM_NAME == "") ? "" : {ROM_NAME, "_values_lane", NUMBER, ".mem"}),
-                .COLUMNS_FILE     ((ROM_NAME == "") ? "" : {ROM_NAME, "_columns_lane", NUMBER, ".mem"}),
-                .MACS_FILE        ((ROM_NAME == "") ? "" : {ROM_NAME, "_macs_lane", NUMBER, ".mem"})
-            ) lane (
+                .VALUES_FILE      ((ROM_NAME == "") ? "" : {ROM_NAME, "_values_pe", NUMBER, ".mem"}),
+                .COLUMNS_FILE     ((ROM_NAME == "") ? "" : {ROM_NAME, "_columns_pe", NUMBER, ".mem"}),
+                .MACS_FILE        ((ROM_NAME == "") ? "" : {ROM_NAME, "_macs_pe", NUMBER, ".mem"})
+            ) pe (
                 .clock           (clock),
                 .reset           (reset),
                 .restart         (restart),
@@ -242,9 +242,9 @@ module sptfra_spmv_array #(
                 .write_enable    (operand_write),
                 .write_address   (operand_address),
                 .write_data      (operand_data),
-                .next_carry      (carries[48*WAYS*NEXT +: 48*WAYS]),
-                .carry           (carries[48*WAYS*index +: 48*WAYS]),
-                .result          (results[48*WAYS*index +: 48*WAYS]),
+                .next_carry      (carries[48*CHANNELS*NEXT +: 48*CHANNELS]),
+                .carry           (carries[48*CHANNELS*index +: 48*CHANNELS]),
+                .result          (results[48*CHANNELS*index +: 48*CHANNELS]),
                 .pending         (pending[index]),
                 .take            (take[index])
             );
@@ -252,22 +252,22 @@ module sptfra_spmv_array #(
     endgenerate
 
     sptfra_spmv_collector #(
-        .LANES            (LANES),
-        .WAYS             (WAYS),
+        .PES              (PES),
+        .CHANNELS         (CHANNELS),
         .DATA_BITS        (DATA_BITS),
         .ELEMENTS         (ELEMENTS),
         .MIRROR           (MIRROR_SIDE > 0),
         .AHEAD            (AHEAD),
         .DESTINATION_BITS (DESTINATION_BITS),
         .SHIFTS           (SHIFTS),
-        .VISIT_DEPTH      (VISIT_DEPTH),
+        .SLOT_DEPTH       (SLOT_DEPTH),
         .ROM_DIR          (ROM_DIR),
-        .VISITS_FILE      ((ROM_NAME == "") ? "" : {ROM_NAME, "_visits.mem"})
+        .SLOTS_FILE       ((ROM_NAME == "") ? "" : {ROM_NAME, "_slots.mem"})
     ) collector (
         .clock        (clock),
         .reset        (reset),
         .restart      (restart),
-        .start_visit  (start_visit),
+        .start_slot   (start_slot),
         .results      (results),
         .pending      (pending),
         .take         (take),

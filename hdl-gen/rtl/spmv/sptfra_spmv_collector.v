@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Collector of the lanes' results: takes one a cycle, rounds it and puts it on the result bus.
+// Collector of the PEs' results: takes one in each write-back slot, rounds it and puts it on the result bus.
 //
 // Take to bus: 3 cycles. Rounding: add half a step, drop the bits below. The order in which results become ready is
-// fixed. So a ROM holds the lane, the destination and the row of each: {last of its program, lane, destination, row}.
+// fixed. So a ROM holds a word for each slot: {last of its program, PE, destination, row}.
 //
-// | destination | four ways: parity classes    | one way: taxels                      |
+// | destination | 4 channels: components       | 1 channel: taxels                    |
 // |-------------|------------------------------|--------------------------------------|
 // | 0           | y, to We                     | the same                             |
 // | 1 2 3       | u0, u1, u2                   | the same                             |
@@ -15,18 +15,19 @@
 // | 8           | r, stored                    |                                      |
 // | 9 10 11     | A_p r, p = 1 2 3, the field  |                                      |
 //
-// No other module knows these numbers: on the bus each destination has a bit of its own, in ports named by what the
-// result is. Of classes 4 is result_g[0], 5 to 8 are result_kept; of taxels 4 to 6 are result_kept, 7 to 15 result_g.
+// With four channels a result has four parity components. No other module knows these numbers: on the bus each
+// destination has a bit of its own, in ports named by what the result is. Of components 4 is result_g[0], 5 to 8 are
+// result_kept. Of taxels 4 to 6 are result_kept, 7 to 15 result_g.
 
 `default_nettype none
 
 module sptfra_spmv_collector #(
-    // Lanes, and multiply-accumulates of each in a cycle
-    parameter LANES = 4,
-    parameter WAYS = 4,
+    // PEs, and multiply-accumulates of each in a cycle
+    parameter PES = 4,
+    parameter CHANNELS = 4,
     // Bits of a result
     parameter DATA_BITS = 27,
-    // Elements of a vector: taxels, or quads of a folded grid
+    // Elements of a vector: taxels, or orbits of a folded grid
     parameter ELEMENTS = 25,
     // Whether products for y are computed by the diagonal mirror of those for x
     parameter MIRROR = 0,
@@ -34,46 +35,46 @@ module sptfra_spmv_collector #(
     parameter DESTINATION_BITS = 4,
     // Bits dropped of a result by destination, 6 each, destination 0 lowest
     parameter [95:0] SHIFTS = {16{6'd16}},
-    // 1: while a program's last visit waits, the ROM's address is that of the next program's first one, if that has
-    // begun: two cycles from one visit to the other. 0: four
+    // 1: while a program's last slot waits, the ROM's address is that of the next program's first one, if that has
+    // begun: two cycles from one slot to the other. 0: four
     parameter AHEAD = 0,
     // Words of the ROM
-    parameter VISIT_DEPTH = 200,
+    parameter SLOT_DEPTH = 200,
     // Prefix of the ROM file name, and the name
     parameter ROM_DIR = "",
-    parameter VISITS_FILE = "",
+    parameter SLOTS_FILE = "",
     // Derived
     parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
-    parameter VISIT_WIDTH = (VISIT_DEPTH > 2) ? $clog2(VISIT_DEPTH) : 1
+    parameter SLOT_WIDTH = (SLOT_DEPTH > 2) ? $clog2(SLOT_DEPTH) : 1
 ) (
     input  wire clock,
     input  wire reset,
     input  wire restart, // one or two cycles before the first issue of a program
-    input  wire [VISIT_WIDTH-1:0] start_visit, // its first visit
-    // From the lanes
-    input  wire [48*WAYS*LANES-1:0] results,
-    input  wire [LANES-1:0] pending,
-    output wire [LANES-1:0] take,
+    input  wire [SLOT_WIDTH-1:0] start_slot, // its first write-back slot
+    // From the PEs
+    input  wire [48*CHANNELS*PES-1:0] results,
+    input  wire [PES-1:0] pending,
+    output wire [PES-1:0] take,
     // Result bus
     output wire result_y, // of these one bit with each result, none without
     output wire [2:0] result_u,
-    output wire [8:0] result_g, // of taxels g_pq at 3 (p - 1) + q, of classes their sums at 0
-    output wire [3:0] result_kept, // of taxels A_p b at p - 1, of classes r, r2, r1, r0
+    output wire [8:0] result_g, // of taxels g_pq at 3 (p - 1) + q, of components their sums at 0
+    output wire [3:0] result_kept, // of taxels A_p b at p - 1, of components r, r2, r1, r0
     output wire [2:0] result_force, // A_p r
     output reg  [ROW_WIDTH-1:0] result_row,
-    output reg  [WAYS*DATA_BITS-1:0] result_value, // class 0 in the lowest bits
+    output reg  [CHANNELS*DATA_BITS-1:0] result_value, // component 0 in the lowest bits
     output reg  result_last // of its program
 );
 
     generate
-        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
-            sptfra_error_ways_must_be_1_or_4 invalid ();
+        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
+            sptfra_error_channels_must_be_1_or_4 invalid ();
         end
         if ((DESTINATION_BITS != 3) && (DESTINATION_BITS != 4)) begin : gen_check_destination
             sptfra_error_a_destination_has_3_or_4_bits invalid ();
         end
-        if ((MIRROR != 0) && (WAYS != 4)) begin : gen_check_mirror
-            sptfra_error_only_four_ways_are_mirrored invalid ();
+        if ((MIRROR != 0) && (CHANNELS != 4)) begin : gen_check_mirror
+            sptfra_error_only_four_channels_are_mirrored invalid ();
         end
     endgenerate
 
@@ -91,64 +92,64 @@ module sptfra_spmv_collector #(
     endfunction
 
     localparam TAKE_TO_BUS = 3; // cycles, which simulations check
-    localparam LANE_WIDTH = (LANES > 2) ? $clog2(LANES) : 1;
-    localparam WORD_WIDTH = 1 + LANE_WIDTH + DESTINATION_BITS + ROW_WIDTH;
+    localparam PE_WIDTH = (PES > 2) ? $clog2(PES) : 1;
+    localparam WORD_WIDTH = 1 + PE_WIDTH + DESTINATION_BITS + ROW_WIDTH;
     // Of all shifts the least, and as many more as any of them has
     localparam integer LEAST_SHIFT = extreme(0);
     localparam integer MORE_BITS = (extreme(1) > LEAST_SHIFT) ? $clog2(extreme(1) - LEAST_SHIFT + 1) : 1;
     localparam integer SPREAD_BITS = DATA_BITS + (1 << MORE_BITS) - 1; // of a result before the rest of its shift
     localparam [3:0] Y = 4'd0, U1 = 4'd2, U2 = 4'd3, R1 = 4'd6, R2 = 4'd7, FORCE_X = 4'd9, FORCE_Y = 4'd10;
 
-    // ---- The next visit, one word ahead of the ROM; after a program's last one, on to the program that has begun
-    reg  [VISIT_WIDTH-1:0] visit_count;
-    reg  visit_known;
+    // ---- The next slot, one word ahead of the ROM; after a program's last one, on to the program that has begun
+    reg  [SLOT_WIDTH-1:0] slot_count;
+    reg  slot_known;
     reg  stopped;
     reg  jump_waits;
-    reg  [VISIT_WIDTH-1:0] jump_target;
+    reg  [SLOT_WIDTH-1:0] jump_target;
     reg  last;
-    reg  [LANE_WIDTH-1:0] lane;
+    reg  [PE_WIDTH-1:0] pe;
     reg  [DESTINATION_BITS-1:0] destination;
     reg  [ROW_WIDTH-1:0] row;
-    wire [WORD_WIDTH-1:0] visit;
-    reg  [LANES-1:0] select; // lane, one bit each
+    wire [WORD_WIDTH-1:0] slot;
+    reg  [PES-1:0] select; // PE, one bit each
     reg  parted; // both halves of y are written: the next result waits a cycle
-    wire may_take = visit_known && !parted;
-    wire taking = (take != {LANES{1'b0}});
+    wire may_take = slot_known && !parted;
+    wire taking = (take != {PES{1'b0}});
     wire ends = taking && last;
     wire jump = stopped && jump_waits;
-    wire fetch = taking || !visit_known;
+    wire fetch = taking || !slot_known;
     reg  filling; // the ROM's first word is on its way
-    reg  aimed; // the address is the next program's, and the visit is the last of this one
-    wire loads = fetch && !stopped && !ends && !filling; // a visit
-    wire at_last = loads ? visit[WORD_WIDTH-1] : visit_known && last && !taking;
+    reg  aimed; // the address is the next program's, and the slot is the last of this one
+    wire loads = fetch && !stopped && !ends && !filling; // a slot
+    wire at_last = loads ? slot[WORD_WIDTH-1] : slot_known && last && !taking;
     wire aim = (AHEAD != 0) && at_last && !aimed && jump_waits;
 
     sptfra_rom #(
         .WIDTH         (WORD_WIDTH),
-        .DEPTH         (VISIT_DEPTH),
-        .ADDRESS_WIDTH (VISIT_WIDTH),
+        .DEPTH         (SLOT_DEPTH),
+        .ADDRESS_WIDTH (SLOT_WIDTH),
         .ROM_DIR       (ROM_DIR),
-        .FILE          (VISITS_FILE)
-    ) visits (
+        .FILE          (SLOTS_FILE)
+    ) slots (
         .clock   (clock),
         .enable  (fetch),
-        .address (visit_count),
-        .data    (visit)
+        .address (slot_count),
+        .data    (slot)
     );
 
     always @(posedge clock) begin
         if (jump || aim) begin
-            visit_count <= jump_target;
+            slot_count <= jump_target;
         end else if (fetch) begin
-            visit_count <= visit_count + 1;
+            slot_count <= slot_count + 1;
         end
         filling <= jump;
-        visit_known <= !stopped && !ends && !filling;
+        slot_known <= !stopped && !ends && !filling;
         if (fetch) begin
-            {last, lane, destination, row} <= visit;
+            {last, pe, destination, row} <= slot;
         end
         if (restart) begin
-            jump_target <= start_visit;
+            jump_target <= start_slot;
             jump_waits <= 1'b1;
         end else if (jump || (ends && aimed)) begin
             jump_waits <= 1'b0;
@@ -159,10 +160,10 @@ module sptfra_spmv_collector #(
         end else if (jump) begin
             stopped <= 1'b0;
         end
-        parted <= (WAYS > 1) && taking && (destination == Y[DESTINATION_BITS-1:0]);
+        parted <= (CHANNELS > 1) && taking && (destination == Y[DESTINATION_BITS-1:0]);
         if (reset) begin
-            visit_count <= {VISIT_WIDTH{1'b0}};
-            visit_known <= 1'b0;
+            slot_count <= {SLOT_WIDTH{1'b0}};
+            slot_known <= 1'b0;
             stopped <= 1'b1;
             jump_waits <= 1'b0;
             aimed <= 1'b0;
@@ -172,72 +173,72 @@ module sptfra_spmv_collector #(
 
     genvar index;
     generate
-        for (index = 0; index < LANES; index = index + 1) begin : gen_select
+        for (index = 0; index < PES; index = index + 1) begin : gen_select
             always @(posedge clock) begin
                 if (fetch) begin
-                    select[index] <= (LANES == 1) || (visit[DESTINATION_BITS+ROW_WIDTH +: LANE_WIDTH] == index);
+                    select[index] <= (PES == 1) || (slot[DESTINATION_BITS+ROW_WIDTH +: PE_WIDTH] == index);
                 end
             end
         end
     endgenerate
 
 `ifdef SIMULATION
-    // By the schedule a program's first visit is reached before the next program begins
+    // By the schedule a program's first slot is reached before the next program begins
     always @(posedge clock) begin
         if (!reset && restart && jump_waits && !jump && !(ends && aimed)) begin
-            $fdisplay(32'h80000002, "%m: a program has begun while the one before waits for its first visit");
+            $fdisplay(32'h80000002, "%m: a program has begun while the one before waits for its first slot");
             $fatal(1);
         end
     end
 `endif
 
-    // ---- Visit
-    wire [48*WAYS-1:0] result_of [0:LANES-1];
-    reg [48*WAYS-1:0] visited;
-    reg visited_valid;
-    reg [DESTINATION_BITS-1:0] visited_destination;
-    reg [5:0] visited_shift;
-    reg [ROW_WIDTH-1:0] visited_row;
+    // ---- Result that was taken
+    wire [48*CHANNELS-1:0] result_of [0:PES-1];
+    reg [48*CHANNELS-1:0] taken;
+    reg taken_valid;
+    reg [DESTINATION_BITS-1:0] taken_destination;
+    reg [5:0] taken_shift;
+    reg [ROW_WIDTH-1:0] taken_row;
 
     generate
-        for (index = 0; index < LANES; index = index + 1) begin : gen_results
-            assign result_of[index] = results[48*WAYS*index +: 48*WAYS];
+        for (index = 0; index < PES; index = index + 1) begin : gen_results
+            assign result_of[index] = results[48*CHANNELS*index +: 48*CHANNELS];
         end
     endgenerate
 
-    assign take = select & pending & {LANES{may_take}};
+    assign take = select & pending & {PES{may_take}};
 
     always @(posedge clock) begin
-        visited <= result_of[lane];
-        visited_valid <= taking;
-        visited_destination <= destination;
-        visited_shift <= SHIFTS[6*destination +: 6];
-        visited_row <= row;
+        taken <= result_of[pe];
+        taken_valid <= taking;
+        taken_destination <= destination;
+        taken_shift <= SHIFTS[6*destination +: 6];
+        taken_row <= row;
         if (reset) begin
-            visited_valid <= 1'b0;
+            taken_valid <= 1'b0;
         end
     end
 
     // ---- Round: half a step of the result, then the shift, both by destination. What all shifts have in common is
     // wires, and the bits below are left out on the way here. The format of each result was chosen so that its worst
     // case fits: the bits above are copies of the sign
-    wire [5:0] visited_more = visited_shift - LEAST_SHIFT[5:0];
-    wire [47:0] half = ((48'd1 << visited_more[MORE_BITS-1:0]) << LEAST_SHIFT) >> 1;
+    wire [5:0] taken_more = taken_shift - LEAST_SHIFT[5:0];
+    wire [47:0] half = ((48'd1 << taken_more[MORE_BITS-1:0]) << LEAST_SHIFT) >> 1;
     reg [MORE_BITS-1:0] sum_more;
     reg sum_valid;
     reg [DESTINATION_BITS-1:0] sum_destination;
     reg [ROW_WIDTH-1:0] sum_row;
-    wire [WAYS*DATA_BITS-1:0] rounded;
-    wire _unused_more = &{1'b0, visited_more};
+    wire [CHANNELS*DATA_BITS-1:0] rounded;
+    wire _unused_more = &{1'b0, taken_more};
 
     generate
-        for (index = 0; index < WAYS; index = index + 1) begin : gen_ways
+        for (index = 0; index < CHANNELS; index = index + 1) begin : gen_channels
             reg [47:0] sum;
             wire [111+DATA_BITS:0] wide = { {(64 + DATA_BITS){sum[47]}}, sum};
             wire [SPREAD_BITS-1:0] spread = wide[LEAST_SHIFT +: SPREAD_BITS] >> sum_more;
 
             always @(posedge clock) begin
-                sum <= visited[48*index +: 48] + half;
+                sum <= taken[48*index +: 48] + half;
             end
 
             assign rounded[DATA_BITS*index +: DATA_BITS] = spread[DATA_BITS-1:0];
@@ -245,7 +246,7 @@ module sptfra_spmv_collector #(
         end
     endgenerate
 
-    // ---- Bus: the classes from the ways that computed them
+    // ---- Bus: the components from the channels that computed them
     wire odd_x = (sum_destination == U1[DESTINATION_BITS-1:0]) || ((DESTINATION_BITS == 4)
         && ((sum_destination == R1[DESTINATION_BITS-1:0]) || (sum_destination == FORCE_X[DESTINATION_BITS-1:0])));
     wire odd_y = (sum_destination == U2[DESTINATION_BITS-1:0]) || ((DESTINATION_BITS == 4)
@@ -254,10 +255,10 @@ module sptfra_spmv_collector #(
     reg [2:1] lasts;
 
     always @(posedge clock) begin
-        sum_valid <= visited_valid;
-        sum_destination <= visited_destination;
-        sum_more <= visited_more[MORE_BITS-1:0];
-        sum_row <= visited_row;
+        sum_valid <= taken_valid;
+        sum_destination <= taken_destination;
+        sum_more <= taken_more[MORE_BITS-1:0];
+        sum_row <= taken_row;
         route <= (16'd1 << sum_destination) & {16{sum_valid}};
         result_row <= sum_row;
         {result_last, lasts} <= {lasts, ends};
@@ -280,23 +281,23 @@ module sptfra_spmv_collector #(
     assign {result_u, result_y} = route[3:0];
 
     generate
-        if (WAYS == 4) begin : gen_classes
+        if (CHANNELS == 4) begin : gen_components
             assign {result_force, result_kept} = route[11:5];
             assign result_g = {8'd0, route[4]};
             wire _unused = &{1'b0, route[15:12]};
 
-            wire [DATA_BITS-1:0] way_0 = rounded[DATA_BITS*0 +: DATA_BITS];
-            wire [DATA_BITS-1:0] way_1 = rounded[DATA_BITS*1 +: DATA_BITS];
-            wire [DATA_BITS-1:0] way_2 = rounded[DATA_BITS*2 +: DATA_BITS];
-            wire [DATA_BITS-1:0] way_3 = rounded[DATA_BITS*3 +: DATA_BITS];
+            wire [DATA_BITS-1:0] channel_0 = rounded[DATA_BITS*0 +: DATA_BITS];
+            wire [DATA_BITS-1:0] channel_1 = rounded[DATA_BITS*1 +: DATA_BITS];
+            wire [DATA_BITS-1:0] channel_2 = rounded[DATA_BITS*2 +: DATA_BITS];
+            wire [DATA_BITS-1:0] channel_3 = rounded[DATA_BITS*3 +: DATA_BITS];
 
             always @(posedge clock) begin
                 if (odd_x) begin
-                    result_value <= {way_2, way_3, way_0, way_1};
+                    result_value <= {channel_2, channel_3, channel_0, channel_1};
                 end else if (odd_y && (MIRROR != 0)) begin
-                    result_value <= {way_2, way_0, way_3, way_1};
+                    result_value <= {channel_2, channel_0, channel_3, channel_1};
                 end else if (odd_y) begin
-                    result_value <= {way_1, way_0, way_3, way_2};
+                    result_value <= {channel_1, channel_0, channel_3, channel_2};
                 end else begin
                     result_value <= rounded;
                 end

@@ -1,310 +1,123 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// One SpMV lane: walks its own MCSR ROMs (values, columns, MACs per row), one multiply-accumulate a cycle in each of
-// its ways. With four ways these are the parity classes of the operand: same row, same column, own coefficient.
+// Multiply-accumulate lane of a PE, with the carry of a row that is cut in two and two buffers for finished sums.
 //
-// Issue to result register: 7 cycles (ROM, address, operand memory, 3 for the MAC, carry). Initiation interval: 1.
-// Kinds of row segments: 0 row, 1 tail of a row begun in the lane before, 2 head of a row that the next lane
-// ends, 3 idle. A head is completed by the carry of the next lane, which is there in time by construction.
+// Coefficients of up to 18 and operands of up to 27 bits take one multiplier. Wider ones take two, and sum products
+// over 2^17, rounded. There coefficients and friction components are left-aligned, so that short ones lose little or
+// nothing. Operands to accumulator: 3 cycles; accumulator to result: 1. Initiation interval: 1.
 
 `default_nettype none
 
 module sptfra_spmv_lane #(
-    // Multiply-accumulates a cycle: 1, or 4 parity classes
-    parameter WAYS = 4,
-    // Bits of a coefficient, at most 27, and of an operand, at most 35; the accumulator has 48
+    // Bits of a coefficient, at most 27, and of an operand, at most 35
     parameter COEFFICIENT_BITS = 18,
     parameter DATA_BITS = 27,
-    // Elements of a vector: taxels, or quads of a folded grid
-    parameter ELEMENTS = 25,
-    // Vectors that a product reads side by side, at most
-    parameter VECTORS = 3,
-    // Words of the ROMs and of the operand memory
-    parameter WORD_DEPTH = 512,
-    parameter SEGMENT_DEPTH = 64,
-    parameter OPERAND_DEPTH = 200,
-    // Quads along a side of a square grid of which some products are mirrored at the diagonal; 0: none is
-    parameter MIRROR_SIDE = 0,
     // Whether friction components take the coefficients' place in some products
-    parameter FRICTION = 1,
-    // Prefix of the ROM file names, and the names
-    parameter ROM_DIR = "",
-    parameter VALUES_FILE = "",
-    parameter COLUMNS_FILE = "",
-    parameter MACS_FILE = "",
-    // Derived
-    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
-    parameter WORD_WIDTH = (WORD_DEPTH > 2) ? $clog2(WORD_DEPTH) : 1,
-    parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1
+    parameter FRICTION = 1
 ) (
     input  wire clock,
     input  wire reset,
-    // From the sequencer
-    input  wire restart, // with the addresses of a program's data
-    input  wire [WORD_WIDTH-1:0] start_word,
-    input  wire restart_segment, // one cycle before, with
-    input  wire [15:0] start_segment,
-    input  wire issue,
-    input  wire mark,
-    input  wire rewind,
-    input  wire [OPERAND_WIDTH-1:0] base,
-    input  wire mirrored, // one cycle after its issue: the operand's mirror image is meant
-    input  wire friction, // three cycles after its issue: a friction component takes the coefficient's place
+    // Operands
+    input  wire valid,
+    input  wire first, // of a row segment
+    input  wire [COEFFICIENT_BITS-1:0] coefficient,
+    input  wire [DATA_BITS-1:0] operand,
+    input  wire friction, // the coefficient is a code: 0 stands for one, 1 for mu_x, 2 for mu_y
     input  wire signed [17:0] mu_x,
     input  wire signed [17:0] mu_y,
-    // Operand memory, written alike in all lanes
-    input  wire write_enable,
-    input  wire [OPERAND_WIDTH-1:0] write_address,
-    input  wire [WAYS*DATA_BITS-1:0] write_data,
-    // Row sums
-    input  wire [48*WAYS-1:0] next_carry, // of the next lane
-    output wire [48*WAYS-1:0] carry,
-    output wire [48*WAYS-1:0] result,
-    output reg  pending, // result waits for the collector
-    input  wire take
+    // With the accumulated sum
+    input  wire tail_ends, // it is the carry for the PE before
+    input  wire result_ends, // it is a result
+    input  wire is_head, // which the next PE's carry completes
+    input  wire no_other, // no result waits, or the only one is being taken
+    input  wire take,
+    input  wire [47:0] next_carry,
+    output reg  [47:0] carry,
+    output reg  [47:0] result
 );
 
     generate
-        if (OPERAND_DEPTH < VECTORS * ELEMENTS) begin : gen_check_operands
-            sptfra_error_the_operand_memory_does_not_hold_its_vectors invalid ();
-        end
-        if ((MIRROR_SIDE > 0) && (MIRROR_SIDE * MIRROR_SIDE != ELEMENTS)) begin : gen_check_mirror
-            sptfra_error_only_a_square_grid_is_mirrored invalid ();
+        if ((COEFFICIENT_BITS > 27) || (DATA_BITS > 35)) begin : gen_check_factors
+            sptfra_error_two_multipliers_have_27_by_35_bits invalid ();
         end
     endgenerate
 
-    localparam COLUMN_WIDTH = (VECTORS * ELEMENTS > 2) ? $clog2(VECTORS * ELEMENTS) : 1;
-    localparam SEGMENT_WIDTH = (SEGMENT_DEPTH > 2) ? $clog2(SEGMENT_DEPTH) : 1;
-    localparam [1:0] ROW = 2'd0, TAIL = 2'd1, HEAD = 2'd2, IDLE = 2'd3;
+    localparam WIDE = (COEFFICIENT_BITS > 18) || (DATA_BITS > 27);
+    localparam LEFT_BITS = WIDE ? 27 : 18;
+    localparam RIGHT_BITS = WIDE ? 35 : 27;
+    // Where in the left operand the last bit of a coefficient stands, and of a friction component
+    localparam COEFFICIENT_PLACE = !WIDE ? 0 : (COEFFICIENT_BITS < 10) ? 17 : 27 - COEFFICIENT_BITS;
+    localparam FRICTION_PLACE = WIDE ? 9 : 0;
+    localparam signed [17:0] ONE = 18'sd65536; // friction has 16 fraction bits
 
-    // ---- Issue: which MAC of which row segment
-    wire [15:0] segment_address;
-    wire [15:0] segment;
-    wire segment_fetch;
-    wire first;
-    wire last;
-    wire [1:0] kind;
+    // ---- To the multipliers' widths
+    wire signed [LEFT_BITS-1:0] own;
+    wire signed [LEFT_BITS-1:0] component;
+    wire signed [LEFT_BITS-1:0] left = ((FRICTION != 0) && friction) ? component : own;
+    wire signed [RIGHT_BITS-1:0] right;
+    reg  signed [17:0] chosen;
+    wire [47:0] accumulator;
+    genvar place;
+    generate
+        for (place = 0; place < LEFT_BITS; place = place + 1) begin : gen_left
+            localparam OF_COEFFICIENT = place - COEFFICIENT_PLACE;
 
-    sptfra_row_sequencer row_sequencer (
-        .clock         (clock),
-        .restart       (restart_segment),
-        .start_address (start_segment),
-        .issue         (issue),
-        .row_word      (segment),
-        .row_address   (segment_address),
-        .row_fetch     (segment_fetch),
-        .first         (first),
-        .last          (last),
-        .kind          (kind)
-    );
-
-    sptfra_rom #(
-        .WIDTH         (16),
-        .DEPTH         (SEGMENT_DEPTH),
-        .ADDRESS_WIDTH (SEGMENT_WIDTH),
-        .ROM_DIR       (ROM_DIR),
-        .FILE          (MACS_FILE)
-    ) macs_per_row (
-        .clock   (clock),
-        .enable  (segment_fetch),
-        .address (segment_address[SEGMENT_WIDTH-1:0]),
-        .data    (segment)
-    );
-
-    reg  [WORD_WIDTH-1:0] next_word;
-    reg  [WORD_WIDTH-1:0] marked_word;
-    wire [WORD_WIDTH-1:0] word = rewind ? marked_word : next_word;
-    wire mac_issue = issue && (kind != IDLE);
-
-    always @(posedge clock) begin
-        next_word <= restart ? start_word : mac_issue ? word + 1 : word;
-        if (mark) begin
-            marked_word <= next_word;
-        end
-    end
-
-    wire [WAYS*COEFFICIENT_BITS-1:0] value;
-    wire [COLUMN_WIDTH-1:0] column;
-
-    sptfra_rom #(
-        .WIDTH         (WAYS * COEFFICIENT_BITS),
-        .DEPTH         (WORD_DEPTH),
-        .ADDRESS_WIDTH (WORD_WIDTH),
-        .ROM_DIR       (ROM_DIR),
-        .FILE          (VALUES_FILE)
-    ) values (
-        .clock   (clock),
-        .enable  (1'b1),
-        .address (word),
-        .data    (value)
-    );
-
-    sptfra_rom #(
-        .WIDTH         (COLUMN_WIDTH),
-        .DEPTH         (WORD_DEPTH),
-        .ADDRESS_WIDTH (WORD_WIDTH),
-        .ROM_DIR       (ROM_DIR),
-        .FILE          (COLUMNS_FILE)
-    ) columns (
-        .clock   (clock),
-        .enable  (1'b1),
-        .address (word),
-        .data    (column)
-    );
-
-    // ---- Operand: the column, or its mirror image. A register stands behind the ROM,
-    // and the adder in front of the operand memory: neither memory has more than its own register beside it. Registers
-    // that are equal in all lanes are kept, for each lane to have its own at hand
-    wire [31:0] column_wide = {{(32-COLUMN_WIDTH){1'b0}}, column};
-    wire [ROW_WIDTH-1:0] mirror_image;
-    wire [31:0] element; // one cycle after its issue
-    reg  [OPERAND_WIDTH-1:0] element_2;
-    (* keep = "true" *) reg [OPERAND_WIDTH-1:0] base_2;
-    wire [OPERAND_WIDTH-1:0] operand_address = base_2 + element_2;
-    wire [WAYS*DATA_BITS-1:0] operand;
-    reg  [WAYS*COEFFICIENT_BITS-1:0] value_2;
-    reg  [WAYS*COEFFICIENT_BITS-1:0] coefficient;
-    (* keep = "true" *) reg [3:2] swaps; // the classes that are odd in x only and in y only
-
-    // The quad on the other side of the diagonal, of each quad of a square grid
-    localparam QUADS = (MIRROR_SIDE > 0) ? MIRROR_SIDE * MIRROR_SIDE : 1;
-    localparam MIRROR_HALF = (MIRROR_SIDE > 1) ? $clog2(MIRROR_SIDE) : 1;
-
-    function [QUADS*ROW_WIDTH-1:0] images(input integer side);
-        integer index;
-        integer place;
-        reg [31:0] other;
-        begin
-            images = {(QUADS*ROW_WIDTH){1'b0}};
-            for (index = 0; index < side * side; index = index + 1) begin
-                other = (index % side) * side + index / side;
-                for (place = 0; place < ROW_WIDTH; place = place + 1) begin
-                    images[ROW_WIDTH*index + place] = other[place];
-                end
+            if (OF_COEFFICIENT < 0) begin : gen_below
+                assign own[place] = 1'b0;
+            end else begin : gen_own
+                assign own[place] = coefficient[(OF_COEFFICIENT < COEFFICIENT_BITS) ? OF_COEFFICIENT
+                    : COEFFICIENT_BITS - 1];
+            end
+            if (place < FRICTION_PLACE) begin : gen_below_component
+                assign component[place] = 1'b0;
+            end else begin : gen_component
+                assign component[place] = chosen[place-FRICTION_PLACE];
             end
         end
-    endfunction
-
-    assign element = mirrored ? {{(32-ROW_WIDTH){1'b0}}, mirror_image} : column_wide;
-
-    generate
-        if ((MIRROR_SIDE == (1 << MIRROR_HALF)) && (ROW_WIDTH == 2 * MIRROR_HALF)) begin : gen_exchange
-            // Row and column change places
-            assign mirror_image = {column_wide[MIRROR_HALF-1:0], column_wide[2*MIRROR_HALF-1:MIRROR_HALF]};
-        end else if (MIRROR_SIDE > 0) begin : gen_images
-            localparam [QUADS*ROW_WIDTH-1:0] IMAGES = images(MIRROR_SIDE);
-
-            assign mirror_image = IMAGES[ROW_WIDTH*column_wide[ROW_WIDTH-1:0] +: ROW_WIDTH];
-        end else begin : gen_no_mirror
-            assign mirror_image = {ROW_WIDTH{1'b0}};
+        for (place = 0; place < RIGHT_BITS; place = place + 1) begin : gen_right
+            assign right[place] = operand[(place < DATA_BITS) ? place : DATA_BITS - 1];
         end
     endgenerate
 
-    sptfra_ram #(
-        .WIDTH         (WAYS * DATA_BITS),
-        .DEPTH         (OPERAND_DEPTH),
-        .ADDRESS_WIDTH (OPERAND_WIDTH)
-    ) operands (
-        .clock         (clock),
-        .write_enable  (write_enable),
-        .write_address (write_address),
-        .write_data    (write_data),
-        .read_enable   (1'b1),
-        .read_address  (operand_address),
-        .read_data     (operand)
+    always @(*) begin
+        case (coefficient[1:0])
+            2'd0: chosen = ONE;
+            2'd1: chosen = mu_x;
+            default: chosen = mu_y;
+        endcase
+    end
+
+    sptfra_mac #(
+        .WIDE (WIDE)
+    ) mac (
+        .clock       (clock),
+        .reset       (reset),
+        .valid       (valid),
+        .first       (first),
+        .coefficient (left),
+        .data        (right),
+        .accumulator (accumulator)
     );
 
-    always @(posedge clock) begin
-        swaps <= {swaps[2], mirrored};
-        element_2 <= element[OPERAND_WIDTH-1:0];
-        base_2 <= base;
-        value_2 <= value;
-        coefficient <= value_2;
-    end
-
-    // ---- Control beside the data: index k holds what belongs to the issue k cycles ago
-    reg [3:1] mac_valid;
-    reg [3:1] mac_first;
-    reg segment_ends_1;
-    reg [1:0] kind_1;
-    reg [6:2] result_ends;
-    reg [6:2] tail_ends;
-    reg [6:2] is_head;
+    // ---- Sums
+    wire [47:0] row_sum = accumulator + (next_carry & {48{is_head}});
+    reg [47:0] second_result;
 
     always @(posedge clock) begin
-        mac_valid <= {mac_valid[2:1], mac_issue};
-        mac_first <= {mac_first[2:1], first};
-        segment_ends_1 <= issue && last;
-        kind_1 <= kind;
-        result_ends <= {result_ends[5:2], segment_ends_1 && ((kind_1 == ROW) || (kind_1 == HEAD))};
-        tail_ends <= {tail_ends[5:2], segment_ends_1 && (kind_1 == TAIL)};
-        is_head <= {is_head[5:2], kind_1 == HEAD};
-        if (reset) begin
-            mac_valid <= 3'd0;
-            segment_ends_1 <= 1'b0;
-            result_ends <= 5'd0;
-            tail_ends <= 5'd0;
+        if (tail_ends) begin
+            carry <= accumulator;
+        end
+        if (take) begin
+            result <= second_result;
+        end
+        if (result_ends && no_other) begin
+            result <= row_sum;
+        end
+        if (result_ends) begin
+            second_result <= row_sum;
         end
     end
-
-    // ---- Multiply-accumulate, and two places for results
-    reg [1:0] held; // results
-    wire [1:0] kept = held - {1'b0, take};
-
-    always @(posedge clock) begin
-        held <= kept + {1'b0, result_ends[6]};
-        pending <= (kept != 2'd0) || result_ends[6];
-        if (reset) begin
-            held <= 2'd0;
-            pending <= 1'b0;
-        end
-    end
-
-`ifdef SIMULATION
-    // By the schedule there is a place for every result
-    always @(posedge clock) begin
-        if (!reset && result_ends[6] && (kept == 2'd2)) begin
-            $fdisplay(32'h80000002, "%m: a result has come while both places are taken");
-            $fatal(1);
-        end
-    end
-`endif
-
-    genvar way;
-    generate
-        for (way = 0; way < WAYS; way = way + 1) begin : gen_ways
-            // With the diagonal mirror ways 1 and 2 change places
-            localparam OTHER = (WAYS == 1) ? 0 : (way == 1) ? 2 : (way == 2) ? 1 : way;
-
-            sptfra_spmv_way #(
-                .COEFFICIENT_BITS (COEFFICIENT_BITS),
-                .DATA_BITS        (DATA_BITS),
-                .FRICTION         (FRICTION)
-            ) of_way (
-                .clock       (clock),
-                .reset       (reset),
-                .valid       (mac_valid[3]),
-                .first       (mac_first[3]),
-                .coefficient (coefficient[COEFFICIENT_BITS*way +: COEFFICIENT_BITS]),
-                .operand     (((MIRROR_SIDE > 0) && swaps[3]) ? operand[DATA_BITS*OTHER +: DATA_BITS]
-                    : operand[DATA_BITS*way +: DATA_BITS]),
-                .friction    (friction),
-                .mu_x        (mu_x),
-                .mu_y        (mu_y),
-                .tail_ends   (tail_ends[6]),
-                .result_ends (result_ends[6]),
-                .is_head     (is_head[6]),
-                .no_other    (kept == 2'd0),
-                .take        (take),
-                .next_carry  (next_carry[48*way +: 48]),
-                .carry       (carry[48*way +: 48]),
-                .result      (result[48*way +: 48])
-            );
-        end
-    endgenerate
-
-    wire _unused = &{1'b0, segment_address, column_wide, element, swaps};
 
 endmodule
 

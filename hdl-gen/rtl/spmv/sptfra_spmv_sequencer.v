@@ -10,12 +10,12 @@
 `default_nettype none
 
 module sptfra_spmv_sequencer #(
-    // Elements of a vector: taxels, or quads of a folded grid
+    // Elements of a vector: taxels, or orbits of a folded grid
     parameter ELEMENTS = 25,
-    // Words of the lanes' ROMs and operand memories, and of the visit ROM
+    // Words of the PEs' ROMs and operand memories, and of the ROM of write-back slots
     parameter WORD_DEPTH = 512,
     parameter OPERAND_DEPTH = 200,
-    parameter VISIT_DEPTH = 200,
+    parameter SLOT_DEPTH = 200,
     // Products of all programs
     parameter PRODUCTS = 2,
     // Bits of a count of cycles
@@ -23,7 +23,7 @@ module sptfra_spmv_sequencer #(
     // Issue cycles of a product, and cycles to wait before it, until its operand is complete
     parameter [PRODUCTS*COUNT_BITS-1:0] LENGTHS = {(PRODUCTS*COUNT_BITS){1'b1}},
     parameter [PRODUCTS*COUNT_BITS-1:0] WAITS = {(PRODUCTS*COUNT_BITS){1'b0}},
-    // Place of its operand in the lanes' memories, unless that is the frame's stress
+    // First word of its operand in the PEs' memories, unless that is the frame's stress
     parameter [PRODUCTS*16-1:0] BASES = {(PRODUCTS*16){1'b0}},
     parameter [PRODUCTS-1:0] OF_STRESS = {PRODUCTS{1'b0}},
     // Products whose matrix is read again, those that read it again, and those for which the diagonal mirror is meant
@@ -36,30 +36,30 @@ module sptfra_spmv_sequencer #(
     parameter [15:0] RESIDUAL_BANK = 16'd0,
     // Last products of their programs
     parameter [PRODUCTS-1:0] LASTS = {1'b1, {(PRODUCTS-1){1'b0}}},
-    // Programs: first product, and addresses of their data in the ROMs of words, of row segments, of visits
+    // Programs: first product, and addresses of their data in the ROMs of words, of row segments, of write-back slots
     parameter PROGRAMS = 1,
     parameter [PROGRAMS*8-1:0] FIRSTS = {(PROGRAMS*8){1'b0}},
     parameter [PROGRAMS*32-1:0] START_WORDS = {(PROGRAMS*32){1'b0}},
     parameter [PROGRAMS*16-1:0] START_SEGMENTS = {(PROGRAMS*16){1'b0}},
-    parameter [PROGRAMS*32-1:0] START_VISITS = {(PROGRAMS*32){1'b0}},
+    parameter [PROGRAMS*32-1:0] START_SLOTS = {(PROGRAMS*32){1'b0}},
     // Derived
     parameter WORD_WIDTH = (WORD_DEPTH > 2) ? $clog2(WORD_DEPTH) : 1,
     parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1,
-    parameter VISIT_WIDTH = (VISIT_DEPTH > 2) ? $clog2(VISIT_DEPTH) : 1
+    parameter SLOT_WIDTH = (SLOT_DEPTH > 2) ? $clog2(SLOT_DEPTH) : 1
 ) (
     input  wire clock,
     input  wire reset,
-    // Turns
+    // Program scheduler
     input  wire [PROGRAMS-1:0] start, // one at a time
     output wire issued,
-    // To the lanes
+    // To the PEs
     input  wire bank, // of the stress of the frame whose weights are computed
     input  wire field_bank, // of the residual of the frame whose field is
     output wire restart, // one or two cycles before the first issue of a program, with the addresses of its data
     output reg  [WORD_WIDTH-1:0] start_word,
     output wire restart_segment, // one cycle before restart, with
     output reg  [15:0] start_segment,
-    output reg  [VISIT_WIDTH-1:0] start_visit,
+    output reg  [SLOT_WIDTH-1:0] start_slot,
     output wire issue, // one MAC a lane and cycle
     output wire mark, // first issue of a matrix that is read again
     output wire rewind, // first issue of reading it again
@@ -89,7 +89,7 @@ module sptfra_spmv_sequencer #(
     reg first_issue;
     reg [PRODUCT_WIDTH-1:0] chosen;
     reg [WORD_WIDTH-1:0] chosen_word;
-    reg [VISIT_WIDTH-1:0] chosen_visit;
+    reg [SLOT_WIDTH-1:0] chosen_slot;
     reg [PRODUCT_WIDTH-1:0] first_product;
     reg [COUNT_BITS-1:0] first_wait;
     reg [COUNT_BITS-1:0] first_length;
@@ -99,13 +99,13 @@ module sptfra_spmv_sequencer #(
     always @(*) begin
         chosen = {PRODUCT_WIDTH{1'b0}};
         chosen_word = {WORD_WIDTH{1'b0}};
-        chosen_visit = {VISIT_WIDTH{1'b0}};
+        chosen_slot = {SLOT_WIDTH{1'b0}};
         start_segment = 16'd0;
         for (number = 0; number < PROGRAMS; number = number + 1) begin
             if (start[number]) begin
                 chosen = FIRSTS[8*number +: PRODUCT_WIDTH];
                 chosen_word = START_WORDS[32*number +: WORD_WIDTH];
-                chosen_visit = START_VISITS[32*number +: VISIT_WIDTH];
+                chosen_slot = START_SLOTS[32*number +: SLOT_WIDTH];
                 start_segment = START_SEGMENTS[16*number +: 16];
             end
         end
@@ -117,7 +117,7 @@ module sptfra_spmv_sequencer #(
         first_length <= LENGTHS[COUNT_BITS*chosen +: COUNT_BITS];
         first_is_last <= LASTS[chosen];
         start_word <= chosen_word;
-        start_visit <= chosen_visit;
+        start_slot <= chosen_slot;
     end
 
     // ---- The next product, all looked up before it is known which is wanted
@@ -182,7 +182,7 @@ module sptfra_spmv_sequencer #(
         end
     end
 
-    // ---- The operand's place in the lanes' memories, its mirror image, the coefficients' kind
+    // ---- The operand's first word in the PEs' memories, its mirror image, the coefficients' kind
     localparam [31:0] SECOND_BANK = ELEMENTS;
     reg [3:1] frictions;
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Results to taxels: the four parity classes of a quad become the values of its four taxels; u_0 gets the stress added
-// first. Where taxels are not folded, results pass as they are.
+// Results to taxels: the four parity components of an orbit become the values of its four taxels. u_0 gets the stress
+// added first. Where taxels are not folded, results pass as they are.
 //
-// Result bus to taxels: 5 cycles, one quad a cycle; 1 where taxels are not folded. The formats leave room: a taxel's
-// value has DATA_BITS bits at a quarter of the classes' step. Member 0 is the quad's taxel next to the origin, 1 its
+// Result bus to taxels: 5 cycles, one orbit a cycle; 1 where taxels are not folded. The formats leave room: a taxel's
+// value has DATA_BITS bits at a quarter of the components' step. Image 0 is the orbit's taxel next to the origin, 1 its
 // mirror image in x, 2 in y, 3 in both.
 
 `default_nettype none
 
 module sptfra_unfold #(
-    // 4: parity classes; 1: taxels
-    parameter WAYS = 4,
-    // Elements of a vector: taxels, or quads of a folded grid
+    // 4: parity components; 1: taxels
+    parameter CHANNELS = 4,
+    // Elements of a vector: taxels, or orbits of a folded grid
     parameter ELEMENTS = 25,
     // Bits of a value
     parameter DATA_BITS = 27,
@@ -28,33 +28,33 @@ module sptfra_unfold #(
     input  wire stress_write,
     input  wire stress_write_bank,
     input  wire [ROW_WIDTH-1:0] stress_write_row,
-    input  wire [WAYS*DATA_BITS-1:0] stress_write_data,
+    input  wire [CHANNELS*DATA_BITS-1:0] stress_write_data,
     // Result bus: y, u0, u1, u2 and, of a folded field, A_p r
     input  wire result_y,
     input  wire [2:0] result_u,
     input  wire [2:0] result_force,
     input  wire [ROW_WIDTH-1:0] result_row,
-    input  wire [WAYS*DATA_BITS-1:0] result_value,
+    input  wire [CHANNELS*DATA_BITS-1:0] result_value,
     input  wire result_last,
-    // Taxels, member 0 in the lowest bits
+    // Taxels, image 0 in the lowest bits
     output wire taxel_y,
     output wire [2:0] taxel_u,
     output wire [2:0] taxel_force,
     output wire [ROW_WIDTH-1:0] taxel_row,
-    output wire [WAYS*DATA_BITS-1:0] taxels,
+    output wire [CHANNELS*DATA_BITS-1:0] taxels,
     output wire taxel_last, // of its program
     output wire coefficients_complete // one cycle, with the last u: the stress of this frame is done with
 );
 
     generate
-        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
-            sptfra_error_ways_must_be_1_or_4 invalid ();
+        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
+            sptfra_error_channels_must_be_1_or_4 invalid ();
         end
     endgenerate
 
     // ---- What a value is, beside it on its way: stage k holds what was on the bus k cycles ago
-    localparam LATENCY = (WAYS == 4) ? 5 : 1; // from the result bus to taxels, which simulations check
-    localparam STAGES = (WAYS == 4) ? 5 : 1;
+    localparam LATENCY = (CHANNELS == 4) ? 5 : 1; // from the result bus to taxels, which simulations check
+    localparam STAGES = (CHANNELS == 4) ? 5 : 1;
 
     wire [6:0] route = {result_force, result_u, result_y};
     wire routed = (route != 7'd0);
@@ -97,8 +97,8 @@ module sptfra_unfold #(
     );
 
     generate
-        if (WAYS == 4) begin : gen_classes
-            // ---- Stage 1: the stress of the quad. The bank changes when a frame's last u has passed
+        if (CHANNELS == 4) begin : gen_components
+            // ---- Stage 1: the stress of the orbit. The bank changes when a frame's last u has passed
             reg bank;
             reg [4*DATA_BITS-1:0] value_1;
             wire [4*DATA_BITS-1:0] stress_1;
@@ -129,10 +129,10 @@ module sptfra_unfold #(
             end
 
             // ---- Stages 2 and 3: the stress at the step of u, added. Stages 4 and 5: mirror in x, mirror in y
-            wire [4*DATA_BITS-1:0] class_3;
+            wire [4*DATA_BITS-1:0] component_3;
             genvar index;
 
-            for (index = 0; index < 4; index = index + 1) begin : gen_class
+            for (index = 0; index < 4; index = index + 1) begin : gen_component
                 localparam DROP = (U_SHIFT > 0) ? U_SHIFT : 0;
                 localparam RISE = (U_SHIFT < 0) ? -U_SHIFT : 0;
                 wire signed [DATA_BITS-1:0] own_stress = stress_1[DATA_BITS*index +: DATA_BITS];
@@ -153,7 +153,7 @@ module sptfra_unfold #(
                     value_3 <= sum[DATA_BITS:1];
                 end
 
-                assign class_3[DATA_BITS*index +: DATA_BITS] = value_3;
+                assign component_3[DATA_BITS*index +: DATA_BITS] = value_3;
             end
 
             // The bits above are copies of the sign
@@ -164,17 +164,17 @@ module sptfra_unfold #(
             ) butterfly (
                 .clock  (clock),
                 .enable (1'b1),
-                .values (class_3),
+                .values (component_3),
                 .sums   (wide)
             );
 
-            for (index = 0; index < 4; index = index + 1) begin : gen_members
+            for (index = 0; index < 4; index = index + 1) begin : gen_images
                 assign taxels[DATA_BITS*index +: DATA_BITS] = wide[(DATA_BITS+2)*index +: DATA_BITS];
             end
 
             wire _unused = &{1'b0, wide};
         end else begin : gen_taxels
-            reg [WAYS*DATA_BITS-1:0] value_1;
+            reg [CHANNELS*DATA_BITS-1:0] value_1;
 
             assign taxels = value_1;
 

@@ -3,15 +3,15 @@
 //
 // We: weights |w| = max(-y, 0) (Eq. 9) from y = C33inv b; of a folded grid also what pulls, y+ = max(y, 0).
 //
-// Taxels to operand memories: 1 cycle. Folded again into parity classes: 4 cycles for |w|, 5 for y+. The array adds
+// Taxels to operand memories: 1 cycle. Folded again into parity components: 4 cycles for |w|, 5 for y+. The array adds
 // one.
 
 `default_nettype none
 
 module sptfra_we #(
-    // 4: parity classes; 1: taxels
-    parameter WAYS = 4,
-    // Elements of a vector: taxels, or quads of a folded grid
+    // 4: parity components; 1: taxels
+    parameter CHANNELS = 4,
+    // Elements of a vector: taxels, or orbits of a folded grid
     parameter ELEMENTS = 25,
     // Bits of a value
     parameter DATA_BITS = 27,
@@ -29,36 +29,36 @@ module sptfra_we #(
     // Taxels
     input  wire taxel_y,
     input  wire [ROW_WIDTH-1:0] taxel_row,
-    input  wire [WAYS*DATA_BITS-1:0] taxels, // y, member 0 in the lowest bits
+    input  wire [CHANNELS*DATA_BITS-1:0] taxels, // y, image 0 in the lowest bits
     // Weights of the taxels, to the field and the contact counter
     output wire weights_valid,
     output wire [ROW_WIDTH-1:0] weights_row,
-    output wire [WAYS*DATA_BITS-1:0] weights,
+    output wire [CHANNELS*DATA_BITS-1:0] weights,
     // Operand memories
     output wire write_next, // write_valid of the next cycle
     output reg  write_valid,
     output reg  [OPERAND_WIDTH-1:0] write_address,
-    output reg  [WAYS*DATA_BITS-1:0] write_data // class 0 in the lowest bits
+    output reg  [CHANNELS*DATA_BITS-1:0] write_data // component 0 in the lowest bits
 );
 
     generate
-        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
-            sptfra_error_ways_must_be_1_or_4 invalid ();
+        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
+            sptfra_error_channels_must_be_1_or_4 invalid ();
         end
     endgenerate
 
-    localparam LATENCY = (WAYS == 4) ? 5 : 1; // from taxels to the last write of them, which simulations check
+    localparam LATENCY = (CHANNELS == 4) ? 5 : 1; // from taxels to the last write of them, which simulations check
     localparam [31:0] BASE = WEIGHT_BASE;
     localparam [31:0] LENGTH = ELEMENTS;
     localparam signed [DATA_BITS-1:0] ZERO = 0;
 
     generate
-        if (WAYS == 4) begin : gen_folded
+        if (CHANNELS == 4) begin : gen_folded
             // ---- Stage 1: part. Stages 2 and 3: fold
             reg [3:1] valid;
-            reg [ROW_WIDTH-1:0] quad_1;
-            reg [ROW_WIDTH-1:0] quad_2;
-            reg [ROW_WIDTH-1:0] quad_3;
+            reg [ROW_WIDTH-1:0] orbit_1;
+            reg [ROW_WIDTH-1:0] orbit_2;
+            reg [ROW_WIDTH-1:0] orbit_3;
             wire [4*DATA_BITS-1:0] press;
             wire [4*DATA_BITS-1:0] pull;
             wire [4*DATA_BITS+7:0] press_sums;
@@ -67,13 +67,13 @@ module sptfra_we #(
 
             always @(posedge clock) begin
                 valid <= {valid[2:1], taxel_y};
-                {quad_3, quad_2, quad_1} <= {quad_2, quad_1, taxel_row};
+                {orbit_3, orbit_2, orbit_1} <= {orbit_2, orbit_1, taxel_row};
                 if (reset) begin
                     valid <= 3'd0;
                 end
             end
 
-            for (index = 0; index < 4; index = index + 1) begin : gen_members
+            for (index = 0; index < 4; index = index + 1) begin : gen_images
                 wire signed [DATA_BITS-1:0] y = taxels[DATA_BITS*index +: DATA_BITS];
                 reg signed [DATA_BITS-1:0] pressing;
                 reg signed [DATA_BITS-1:0] pulling;
@@ -106,7 +106,7 @@ module sptfra_we #(
             );
 
             assign weights_valid = valid[1];
-            assign weights_row = quad_1;
+            assign weights_row = orbit_1;
             assign weights = press;
 
             // ---- Stages 4 and 5: round, write one after the other. The next result is two cycles behind, or more
@@ -116,9 +116,9 @@ module sptfra_we #(
             reg [4*DATA_BITS-1:0] pull_held;
             wire [4*DATA_BITS-1:0] press_rounded;
             wire [4*DATA_BITS-1:0] pull_rounded;
-            wire [31:0] quad_wide = {{(32-ROW_WIDTH){1'b0}}, quad_3};
+            wire [31:0] orbit_wide = {{(32-ROW_WIDTH){1'b0}}, orbit_3};
 
-            for (index = 0; index < 4; index = index + 1) begin : gen_classes
+            for (index = 0; index < 4; index = index + 1) begin : gen_components
                 wire [DATA_BITS+1:0] press_half = press_sums[(DATA_BITS+2)*index +: DATA_BITS+2] + HALF;
                 wire [DATA_BITS+1:0] pull_half = pull_sums[(DATA_BITS+2)*index +: DATA_BITS+2] + HALF;
 
@@ -135,7 +135,7 @@ module sptfra_we #(
                 pull_written <= pull_waits;
                 if (valid[3]) begin
                     pull_held <= pull_rounded;
-                    write_address <= BASE[OPERAND_WIDTH-1:0] + quad_wide[OPERAND_WIDTH-1:0];
+                    write_address <= BASE[OPERAND_WIDTH-1:0] + orbit_wide[OPERAND_WIDTH-1:0];
                     write_data <= press_rounded;
                 end else begin
                     write_address <= write_address - LENGTH[OPERAND_WIDTH-1:0]; // y+ stands before |w|
@@ -157,7 +157,7 @@ module sptfra_we #(
                 .done  (pull_written)
             );
 
-            wire _unused = &{1'b0, quad_wide};
+            wire _unused = &{1'b0, orbit_wide};
         end else begin : gen_taxels
             wire signed [DATA_BITS-1:0] y = taxels[DATA_BITS-1:0];
             wire [31:0] row_wide = {{(32-ROW_WIDTH){1'b0}}, taxel_row};

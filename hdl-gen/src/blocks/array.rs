@@ -9,7 +9,7 @@ use crate::plan::product::{Coefficients, DESTINATIONS, SUMS_DESTINATION, destina
 use crate::plan::resources::BlockCost;
 
 use super::row_width;
-use crate::timing::latency::TURN_GAP;
+use crate::timing::latency::PROGRAM_GAP;
 
 /// Bits of a word in the MACs-per-row ROM: a count and what becomes of the sum.
 const SEGMENT_BITS: u32 = 16;
@@ -19,19 +19,19 @@ pub fn column_bits(plan: &Plan) -> u32 {
     address_bits(vectors(plan) * plan.elements())
 }
 
-/// The lanes' numbers in the names of their ROM files: all have as many digits, two or three.
-pub fn lane_numbers(plan: &Plan) -> Vec<String> {
-    let lanes = plan.walkers();
-    let digits = if lanes > 100 { 3 } else { 2 };
-    (0..lanes).map(|lane| format!("{lane:0digits$}")).collect()
+/// The PEs' numbers in the names of their ROM files: all have as many digits, two or three.
+pub fn pe_numbers(plan: &Plan) -> Vec<String> {
+    let pes = plan.pes();
+    let digits = if pes > 100 { 3 } else { 2 };
+    (0..pes).map(|pe| format!("{pe:0digits$}")).collect()
 }
 
 /// The instance's parameters: sizes, then the products and programs as tables.
 pub fn parameters(plan: &Plan) -> Parameters {
     let (hardware, schedule) = (&plan.design.hardware, &plan.schedule);
     let parameters = Parameters::new()
-        .count("LANES", plan.walkers())
-        .count("WAYS", plan.ways())
+        .count("PES", plan.pes())
+        .count("CHANNELS", plan.channels())
         .number("COEFFICIENT_BITS", hardware.coefficient_bits.into())
         .number("DATA_BITS", hardware.data_bits.into())
         .count("ELEMENTS", plan.elements())
@@ -39,7 +39,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .count("WORD_DEPTH", schedule.word_depth())
         .count("SEGMENT_DEPTH", schedule.segment_depth())
         .count("OPERAND_DEPTH", plan.operands.words())
-        .count("VISIT_DEPTH", schedule.visits.len())
+        .count("SLOT_DEPTH", schedule.slots.len())
         .count("MIRROR_SIDE", mirror_side(plan));
     let parameters = programs(plan, products(plan, parameters));
     let parameters = if schedule.ahead { parameters.flag("AHEAD", true) } else { parameters };
@@ -48,24 +48,24 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .table("SHIFTS", 6, shifts(plan))
         .outer("ROM_DIR")
         .text("ROM_NAME", &plan.design.name)
-        .count("NUMBER_BITS", 8 * lane_numbers(plan)[0].len())
-        .texts("LANE_NUMBERS", lane_numbers(plan))
+        .count("NUMBER_BITS", 8 * pe_numbers(plan)[0].len())
+        .texts("PE_NUMBERS", pe_numbers(plan))
 }
 
-/// A multiplier a lane, or two; the lanes' programs and operands.
+/// A multiplier a lane, or two; the PEs' programs and operands.
 pub fn cost(plan: &Plan) -> BlockCost {
-    let (hardware, schedule, walkers) = (&plan.design.hardware, &plan.schedule, plan.walkers());
-    let ways = plan.ways() as u32;
-    // The lane, the destination, the row, and whether a program ends.
-    let visit = 1 + address_bits(walkers) + destination_bits(plan.has_field()) + row_width(plan);
+    let (hardware, schedule, pes) = (&plan.design.hardware, &plan.schedule, plan.pes());
+    let channels = plan.channels() as u32;
+    // The PE, the destination, the row, and whether a program ends.
+    let slot = 1 + address_bits(pes) + destination_bits(plan.has_field()) + row_width(plan);
     let multipliers = hardware.lanes * plan.factors().multipliers();
     let narrow = if plan.factors().lane_is_narrow() { multipliers } else { 0 };
     BlockCost::new("lanes", &["sptfra_spmv_array"], multipliers).narrow(narrow).with([
-        memory("values", walkers, schedule.word_depth(), ways * hardware.coefficient_bits, true),
-        memory("columns", walkers, schedule.word_depth(), column_bits(plan), true),
-        memory("MACs per row", walkers, schedule.segment_depth(), SEGMENT_BITS, true),
-        memory("visits", 1, schedule.visits.len(), visit, true),
-        memory("operands", walkers, plan.operands.words(), ways * hardware.data_bits, false),
+        memory("values", pes, schedule.word_depth(), channels * hardware.coefficient_bits, true),
+        memory("columns", pes, schedule.word_depth(), column_bits(plan), true),
+        memory("MACs per row", pes, schedule.segment_depth(), SEGMENT_BITS, true),
+        memory("slots", 1, schedule.slots.len(), slot, true),
+        memory("operands", pes, plan.operands.words(), channels * hardware.data_bits, false),
     ])
 }
 
@@ -80,7 +80,7 @@ fn mirror_side(plan: &Plan) -> usize {
 
 fn products(plan: &Plan, parameters: Parameters) -> Parameters {
     let (products, windows, programs) = (&plan.products, &plan.schedule.windows, &plan.schedule.programs);
-    let gap = |index| programs.iter().find(|program| program.first == index).map_or(0, |next| next.gap - TURN_GAP);
+    let gap = |index| programs.iter().find(|program| program.first == index).map_or(0, |next| next.gap - PROGRAM_GAP);
     let length = |index: usize| windows[index].length.max(1);
     let wait = |index: usize| windows[index].wait + gap(index);
     let longest = (0..products.len()).map(|index| length(index).max(wait(index))).max().unwrap_or(1);
@@ -131,7 +131,7 @@ fn programs(plan: &Plan, parameters: Parameters) -> Parameters {
         .table("FIRSTS", 8, of_each(&|index| programs[index].first))
         .table("START_WORDS", 32, of_each(&|index| programs[index].word))
         .table("START_SEGMENTS", 16, of_each(&|index| programs[index].segment))
-        .table("START_VISITS", 32, of_each(&|index| programs[index].visit))
+        .table("START_SLOTS", 32, of_each(&|index| programs[index].slot))
 }
 
 /// Bits dropped by destination. One that no product has repeats the one before, so that it costs nothing.
@@ -139,8 +139,8 @@ fn shifts(plan: &Plan) -> Vec<(u64, String)> {
     let mut known = vec![None; DESTINATIONS];
     for product in &plan.products {
         known[destination(product.result)] = Some((u64::from(product.shift), product.result.name()));
-        if let Some(lead) = product.lead {
-            known[SUMS_DESTINATION] = Some((u64::from(lead.shift), "sums of the frame".to_owned()));
+        if let Some(preload) = product.preload {
+            known[SUMS_DESTINATION] = Some((u64::from(preload.shift), "sums of the frame".to_owned()));
         }
     }
     let mut last = 0;

@@ -43,7 +43,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .count("COLUMNS", plan.design.sensor.columns)
         .count("ROWS", plan.design.sensor.rows)
         .count("SAMPLES", streams.conversions())
-        .count("WAYS", plan.ways())
+        .count("CHANNELS", plan.channels())
         .number("DATA_BITS", plan.design.hardware.data_bits.into())
         .flag("SCALED", plan.scales_frames());
     // As in sptfra_samples.
@@ -120,7 +120,7 @@ pub fn arrival(plan: &Plan) -> Arrival {
     };
     // Each element when its last taxel is there, quads from the middle rows on. Where frames are scaled, when the scale is;
     // where they are averaged, when it is decided whether the average restarts.
-    let (columns, rows) = if plan.ways() > 1 { (sensor.columns / 2, sensor.rows / 2) } else { (0, 0) };
+    let (columns, rows) = if plan.channels() > 1 { (sensor.columns / 2, sensor.rows / 2) } else { (0, 0) };
     let last_taxels = (rows..sensor.rows).flat_map(|y| (columns..sensor.columns).map(move |x| y * sensor.columns + x));
     let element = |taxel| match (plan.scales_frames(), &plan.smoothing) {
         (true, Some(_)) => last + latency::SMOOTHING + latency::frame_scale(samples),
@@ -131,7 +131,7 @@ pub fn arrival(plan: &Plan) -> Arrival {
     Arrival {
         taken: plan.taxels().div_ceil(samples) as u64 - 1,
         elements: last_taxels.map(element).collect(),
-        turn_to_write: latency::turn_to_write(plan.scales_frames()),
+        read_to_write: latency::read_to_write(plan.scales_frames()),
         last_stress,
     }
 }
@@ -170,10 +170,10 @@ pub fn cost(plan: &Plan) -> BlockCost {
     }
     // A copy for each taxel of an element, of the half of the frame that it is in; and one for CeAn.
     let beats = |taxels: usize| taxels.div_ceil(conversions);
-    let half = if plan.ways() > 1 { plan.design.sensor.rows.div_ceil(2) } else { plan.design.sensor.rows };
+    let half = if plan.channels() > 1 { plan.design.sensor.rows.div_ceil(2) } else { plan.design.sensor.rows };
     let kept = beats(half * plan.design.sensor.columns);
     let candidates = if plan.smoothing.is_some() { 2 } else { 1 };
-    memories.push(memory("frame by elements", plan.ways() * conversions, kept, candidates * stress, false));
+    memories.push(memory("frame by elements", plan.channels() * conversions, kept, candidates * stress, false));
     if plan.smoothing.is_some() {
         let width = conversions as u32 * smoothing::WORD_BITS;
         memories.push(memory("averages", 1, 2 << address_bits(beats(taxels)), width, false));

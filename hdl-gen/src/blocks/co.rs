@@ -15,14 +15,14 @@ use super::place;
 pub fn parameters(plan: &Plan) -> Parameters {
     let folded = [Vector::Residual(0), Vector::Residual(1), Vector::Residual(2), Vector::Explained];
     let taxels = [Vector::G(3, 0), Vector::G(3, 1), Vector::G(3, 2)];
-    let stored = if plan.ways() > 1 { &folded[..] } else { &taxels };
+    let stored = if plan.channels() > 1 { &folded[..] } else { &taxels };
     let mut bases: Vec<(u64, String)> =
         stored.iter().map(|&vector| (place(plan, vector).0 as u64, vector.name())).collect();
     let mut in_bank: Vec<bool> = stored.iter().map(|&vector| place(plan, vector).1).collect();
     bases.resize(folded.len(), (0, String::new()));
     in_bank.resize(folded.len(), false);
     let parameters = Parameters::new()
-        .count("WAYS", plan.ways())
+        .count("CHANNELS", plan.channels())
         .count("ELEMENTS", plan.elements())
         .number("DATA_BITS", plan.design.hardware.data_bits.into())
         .count("OPERAND_DEPTH", plan.operands.words())
@@ -42,7 +42,7 @@ pub fn cost(plan: &Plan) -> BlockCost {
     let block = |multipliers| {
         BlockCost::new("Co", &["sptfra_co", "sptfra_unfold"], multipliers).narrow(if narrow { multipliers } else { 0 })
     };
-    if plan.ways() > 1 {
+    if plan.channels() > 1 {
         let folded = 2 * plan.elements().next_power_of_two();
         return block(0).with([memory("folded b", 1, folded, CLASSES as u32 * data, false)]);
     }

@@ -15,7 +15,7 @@ const PLACES: usize = 2;
 pub fn parameters(plan: &Plan) -> Parameters {
     let sensor = &plan.design.sensor;
     Parameters::new()
-        .count("WAYS", plan.ways())
+        .count("CHANNELS", plan.channels())
         .count("COLUMNS", sensor.columns)
         .count("ROWS", sensor.rows)
         .number("DATA_BITS", plan.design.hardware.data_bits.into())
@@ -25,7 +25,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
 /// The weights of two frames; adders and comparisons are no multipliers.
 pub fn cost(plan: &Plan) -> Option<BlockCost> {
     plan.design.algorithm.count_contacts.then(|| {
-        let width = plan.ways() as u32 * plan.design.hardware.data_bits;
+        let width = plan.channels() as u32 * plan.design.hardware.data_bits;
         let frames = memory("contacts", 1, PLACES << row_width(plan), width, false);
         BlockCost::new("contacts", &["sptfra_contact_counter"], 0).with([frames])
     })

@@ -7,17 +7,17 @@ use crate::plan::Plan;
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
 use crate::plan::vector_formats::field_shifts;
-use crate::timing::places::WEIGHT_PLACES;
+use crate::timing::buffers::WEIGHT_BUFFERS;
 
 /// The module.
 pub fn module(plan: &Plan) -> &'static str {
-    if plan.ways() > 1 { "sptfra_field" } else { "sptfra_coefficient_field" }
+    if plan.channels() > 1 { "sptfra_field" } else { "sptfra_coefficient_field" }
 }
 
 /// Cycles from a step to the forces.
 pub fn stages(plan: &Plan) -> u64 {
     // Several words of a folded grid are chosen among two taxels first.
-    if plan.ways() > 1 && plan.streams().words() > 1 { 7 } else { 6 }
+    if plan.channels() > 1 && plan.streams().words() > 1 { 7 } else { 6 }
 }
 
 /// The instance's parameters.
@@ -45,7 +45,7 @@ pub fn cost(plan: &Plan) -> BlockCost {
     let narrow = plan.factors().element_is_narrow();
     let block =
         |multipliers| BlockCost::new("field", modules, multipliers).narrow(if narrow { multipliers } else { 0 });
-    if plan.ways() == 1 {
+    if plan.channels() == 1 {
         // The memory is there without a field, too: the sums over the frame pass it.
         let multipliers = if plan.has_field() { 2 * words } else { 0 };
         let depth = 2 * (3 * plan.taxels()).div_ceil(words);
@@ -55,7 +55,7 @@ pub fn cost(plan: &Plan) -> BlockCost {
         return block(0);
     }
     let multipliers = if plan.factors().has_wide_data() { 2 } else { 1 };
-    let weights = WEIGHT_PLACES * elements.next_power_of_two();
+    let weights = WEIGHT_BUFFERS * elements.next_power_of_two();
     if words > 1 {
         // A copy for a taxel, and one for the next.
         return block(words * multipliers).with([

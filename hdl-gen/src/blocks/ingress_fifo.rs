@@ -5,7 +5,7 @@ use crate::plan::Plan;
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
 use crate::plan::streams::WORD_BITS;
-use crate::timing::places::INGRESS_FRAMES;
+use crate::timing::buffers::INGRESS_FRAMES;
 
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {

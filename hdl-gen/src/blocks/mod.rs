@@ -14,8 +14,8 @@ pub mod field;
 pub mod frame_context;
 pub mod ingress_fifo;
 pub mod op;
+pub mod program_scheduler;
 pub mod registers;
-pub mod turns;
 pub mod unfold;
 pub mod we;
 

@@ -49,7 +49,7 @@ impl Constants {
             decimal("WORDS_IN", 16, &plan.streams().words_in()),
             decimal("WORDS_OUT", 16, &plan.words_out()),
             decimal("HAS_FIELD", 1, &u8::from(plan.field_words() > 0)),
-            decimal("IS_REDUCED", 1, &u8::from(plan.ways() > 1)),
+            decimal("IS_REDUCED", 1, &u8::from(plan.channels() > 1)),
             decimal("HAS_COUNTS", 1, &u8::from(design.input.counts())),
             decimal("DROPS", 1, &u8::from(plan.streams().drops)),
             decimal("SMOOTHING_RATE", 4, &plan.smoothing.as_ref().map_or(0, |of| of.rate)),

@@ -6,7 +6,7 @@ use crate::plan::Plan;
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
     Parameters::new()
-        .count("WAYS", plan.ways())
+        .count("CHANNELS", plan.channels())
         .count("ELEMENTS", plan.elements())
         .number("DATA_BITS", plan.design.hardware.data_bits.into())
         .number("U_SHIFT", plan.formats.folded.map_or(0, |folded| folded.u.lsb - folded.stress.lsb).into())

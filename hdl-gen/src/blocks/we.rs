@@ -11,7 +11,7 @@ use super::place;
 pub fn parameters(plan: &Plan) -> Parameters {
     let weight = plan.formats.weight;
     Parameters::new()
-        .count("WAYS", plan.ways())
+        .count("CHANNELS", plan.channels())
         .count("ELEMENTS", plan.elements())
         .number("DATA_BITS", plan.design.hardware.data_bits.into())
         .number("FOLD_SHIFT", plan.formats.folded.map_or(0, |folded| folded.weight.lsb - weight.lsb).into())

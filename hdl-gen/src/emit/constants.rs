@@ -9,8 +9,8 @@ use crate::model::{PULLING, inverse_gain};
 use crate::plan::format::FRICTION_FRACTION;
 use crate::plan::standard_error::SHARE_FRACTION;
 use crate::timing::latency::{
-    STANDARD_ERROR, TAXEL_TO_CEAN, VISIT_TO_BUS, bus_to_sums, bus_to_taxels, bus_to_write, taxels_to_write,
-    turn_to_write,
+    STANDARD_ERROR, TAKE_TO_BUS, TAXEL_TO_CEAN, bus_to_sums, bus_to_taxels, bus_to_write, read_to_write,
+    taxels_to_write,
 };
 
 /// What a constant in a module of the library is.
@@ -32,8 +32,8 @@ fn constant(module: &str, name: &str) -> i64 {
 fn modules_and_model_have_the_same_constants() {
     let one = 1 << FRICTION_FRACTION;
     let expected: [(&str, &str, i64); 30] = [
-        ("sptfra_taxel_stream", "TURN_TO_STRESS", TAXEL_TO_CEAN as i64),
-        ("sptfra_spmv_collector", "TAKE_TO_BUS", VISIT_TO_BUS as i64),
+        ("sptfra_taxel_stream", "READ_TO_STRESS", TAXEL_TO_CEAN as i64),
+        ("sptfra_spmv_collector", "TAKE_TO_BUS", TAKE_TO_BUS as i64),
         ("sptfra_direction", "CENTROID_FRACTION", line::CENTROID_FRACTION.into()),
         ("sptfra_direction", "PITCH_FRACTION", line::PITCH_FRACTION.into()),
         ("sptfra_line", "LINE_FRACTION", line::LINE_FRACTION.into()),
@@ -79,10 +79,10 @@ fn modules_and_schedule_have_the_same_latencies() {
         ("sptfra_co", "SUMS_LATENCY", both(bus_to_sums)),
     ];
     for (module, name, [folded, taxels]) in expected {
-        let choice = format!("(WAYS == 4) ? {folded} : {taxels}");
+        let choice = format!("(CHANNELS == 4) ? {folded} : {taxels}");
         assert_eq!(literal(module, name), choice, "{module}: {name}");
     }
-    let [scaled, unscaled] = [true, false].map(turn_to_write);
+    let [scaled, unscaled] = [true, false].map(read_to_write);
     let choice = format!("(SCALED != 0) ? {scaled} : {unscaled}");
-    assert_eq!(literal("sptfra_fold", "TURN_TO_WRITTEN"), choice);
+    assert_eq!(literal("sptfra_fold", "READ_TO_WRITTEN"), choice);
 }

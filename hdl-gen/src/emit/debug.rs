@@ -3,7 +3,7 @@
 use crate::plan::Plan;
 
 /// Nets of the core in the order of the probes, each a wire that a line of its own declares: the handshakes of both
-/// streams, the lanes' turns, what leaves the lanes, answers and what is said of a frame.
+/// streams, the lanes' programs, what leaves the lanes, answers and what is said of a frame.
 const NETS: [&str; 20] = [
     "in_tvalid",
     "in_tready",
@@ -35,7 +35,7 @@ const MOST_SAMPLES: u64 = 16_384;
 
 /// Those of [`NETS`] that are zero in all of a plan's cycles. Of the others that tell results some bits may be.
 pub fn always_zero(plan: &Plan) -> &'static [&'static str] {
-    match (plan.ways() > 1, plan.has_field()) {
+    match (plan.channels() > 1, plan.has_field()) {
         (true, true) => &[],
         (true, false) => &["result_kept", "result_force"],
         (false, _) => &["result_force"],

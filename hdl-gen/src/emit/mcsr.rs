@@ -23,7 +23,7 @@ fn text(plan: &Plan, index: usize, matrix: &QuantisedMatrix) -> Vec<u8> {
     let uses: Vec<String> = plan
         .products
         .iter()
-        .filter(|product| product.matrix == index || product.lead.is_some_and(|lead| lead.matrix == index))
+        .filter(|product| product.matrix == index || product.preload.is_some_and(|preload| preload.matrix == index))
         .map(|product| format!("{} -> {}", product.operand().name(), product.result.name()))
         .collect();
     // Writing to a vector cannot fail.
@@ -41,8 +41,8 @@ fn text(plan: &Plan, index: usize, matrix: &QuantisedMatrix) -> Vec<u8> {
     for (row, entries) in matrix.rows.iter().enumerate() {
         let _ = write!(text, "{row}: {} |", entries.len());
         for (column, value) in entries {
-            let ways: Vec<String> = value[..plan.ways()].iter().map(ToString::to_string).collect();
-            let _ = write!(text, " {column}:{}", ways.join(","));
+            let channels: Vec<String> = value[..plan.channels()].iter().map(ToString::to_string).collect();
+            let _ = write!(text, " {column}:{}", channels.join(","));
         }
         text.push(b'\n');
     }

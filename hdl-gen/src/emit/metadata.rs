@@ -62,7 +62,7 @@ pub struct ProductEntry<'a> {
 
 /// The products in the order in which the lanes compute them.
 pub fn products(plan: &Plan) -> Vec<ProductEntry<'_>> {
-    let lanes = plan.walkers() as u64;
+    let pes = plan.pes() as u64;
     let entry = |(product, window): (&Product, &Window)| {
         let matrix = &plan.matrices[product.matrix];
         ProductEntry {
@@ -75,7 +75,7 @@ pub fn products(plan: &Plan) -> Vec<ProductEntry<'_>> {
             shift: product.shift,
             first_issue: window.start,
             issue_cycles: window.length,
-            busy: window.macs as f64 / (window.length * lanes) as f64,
+            busy: window.macs as f64 / (window.length * pes) as f64,
         }
     };
     plan.products.iter().zip(&plan.schedule.windows).map(entry).collect()

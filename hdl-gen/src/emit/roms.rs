@@ -1,6 +1,6 @@
 //! ROM initialisation files: hexadecimal words, one a line, for `$readmemh` and Vivado's `read_mem`.
 
-use crate::blocks::array::{column_bits, lane_numbers};
+use crate::blocks::array::{column_bits, pe_numbers};
 use crate::blocks::{bz, row_width};
 use crate::cores::LONG_BITS;
 use crate::estimators::WEIGHT_BITS;
@@ -16,26 +16,26 @@ use crate::plan::memory::{BANK, banks};
 
 use super::FileMap;
 
-/// Adds every ROM file of the plan. All lanes' files have the same number of words; shorter ones end in zeros.
+/// Adds every ROM file of the plan. All PEs' files have the same number of words; shorter ones end in zeros.
 pub fn insert(plan: &Plan, files: &mut FileMap) {
     let name = &plan.design.name;
     let coefficient_bits = plan.design.hardware.coefficient_bits;
     let column_bits = column_bits(plan);
     let schedule = &plan.schedule;
-    for (program, lane) in schedule.lanes.iter().zip(lane_numbers(plan)) {
-        let file = |contents: &str| format!("rom/{name}_{contents}_lane{lane}.mem");
+    for (program, pe) in schedule.pes.iter().zip(pe_numbers(plan)) {
+        let file = |contents: &str| format!("rom/{name}_{contents}_pe{pe}.mem");
         let depth = schedule.word_depth();
-        let word = |ways: &[i32]| joined(&ways[..plan.ways()], coefficient_bits);
-        let values = program.words.iter().map(|(_, ways)| word(ways));
-        let bits = coefficient_bits * plan.ways() as u32;
+        let word = |channels: &[i32]| joined(&channels[..plan.channels()], coefficient_bits);
+        let values = program.words.iter().map(|(_, channels)| word(channels));
+        let bits = coefficient_bits * plan.channels() as u32;
         insert_rom(files, file("values"), hex(values, depth, bits));
         let columns = program.words.iter().map(|&(column, _)| u128::from(column));
         insert_rom(files, file("columns"), hex(columns, depth, column_bits));
         let segments = program.segments.iter().map(|segment| u128::from((segment.kind as u32) << 14 | segment.macs));
         insert_rom(files, file("macs"), hex(segments, schedule.segment_depth(), 16));
     }
-    let visits = (0..schedule.visits.len()).map(|index| visit(plan, index));
-    insert_rom(files, format!("rom/{name}_visits.mem"), hex(visits, schedule.visits.len(), visit_bits(plan)));
+    let slots = (0..schedule.slots.len()).map(|index| slot(plan, index));
+    insert_rom(files, format!("rom/{name}_slots.mem"), hex(slots, schedule.slots.len(), slot_bits(plan)));
     if let Some(counts) = plan.counts.as_ref().filter(|counts| counts.per_taxel()) {
         for (first, kind) in bz::taxel_files(plan.streams()).iter().enumerate() {
             let step = plan.streams().conversions();
@@ -109,29 +109,29 @@ fn insert_rom(files: &mut FileMap, path: String, text: Vec<u8>) {
     }
 }
 
-/// Bits of a visit: last of its program, lane, destination, row.
-fn visit_bits(plan: &Plan) -> u32 {
-    1 + address_bits(plan.walkers()) + destination_bits(plan.has_field()) + row_width(plan)
+/// Bits of a write-back slot: last of its program, PE, destination, row.
+fn slot_bits(plan: &Plan) -> u32 {
+    1 + address_bits(plan.pes()) + destination_bits(plan.has_field()) + row_width(plan)
 }
 
-fn visit(plan: &Plan, index: usize) -> u128 {
+fn slot(plan: &Plan, index: usize) -> u128 {
     let schedule = &plan.schedule;
-    let visit = schedule.visits[index];
-    let last = index + 1 == schedule.visits.len() || schedule.programs.iter().any(|program| program.visit == index + 1);
+    let slot = schedule.slots[index];
+    let last = index + 1 == schedule.slots.len() || schedule.programs.iter().any(|program| program.slot == index + 1);
     let elements = plan.elements() as u32;
     // Rows in front of a product's own are sums.
-    let (destination, row) = match visit.row.checked_sub(elements) {
+    let (destination, row) = match slot.row.checked_sub(elements) {
         Some(sum) => (SUMS_DESTINATION, sum),
-        None => (destination(plan.products[visit.product as usize].result), visit.row),
+        None => (destination(plan.products[slot.product as usize].result), slot.row),
     };
-    let lane = u128::from(last) << address_bits(plan.walkers()) | u128::from(visit.lane);
-    (lane << destination_bits(plan.has_field()) | destination as u128) << row_width(plan) | u128::from(row)
+    let pe = u128::from(last) << address_bits(plan.pes()) | u128::from(slot.pe);
+    (pe << destination_bits(plan.has_field()) | destination as u128) << row_width(plan) | u128::from(row)
 }
 
-/// The coefficients of all ways in one word, that of way 0 lowest.
-fn joined(ways: &[i32], bits: u32) -> u128 {
+/// The coefficients of all channels in one word, that of channel 0 lowest.
+fn joined(channels: &[i32], bits: u32) -> u128 {
     let mask = (1_u32 << bits) - 1;
-    ways.iter().rev().fold(0, |word, &value| word << bits | u128::from(value as u32 & mask))
+    channels.iter().rev().fold(0, |word, &value| word << bits | u128::from(value as u32 & mask))
 }
 
 /// Words of several weights each.

@@ -6,7 +6,8 @@ use tera::Context;
 use golden::design::{Filter, Samples};
 
 use crate::blocks::{
-    array, bz, calibration, cean, co, contacts, field, frame_context, ingress_fifo, op, row_width, turns, unfold, we,
+    array, bz, calibration, cean, co, contacts, field, frame_context, ingress_fifo, op, program_scheduler, row_width,
+    unfold, we,
 };
 use crate::cores::LONG_BITS;
 use crate::plan::Plan;
@@ -94,7 +95,7 @@ struct View {
     /// What an element of a vector is, how many there are, and how many values come at a time.
     element: &'static str,
     elements: usize,
-    ways: usize,
+    channels: usize,
     programs: usize,
     row_width: u32,
     operand_width: u32,
@@ -105,7 +106,7 @@ struct View {
 
     bz: String,
     cean: String,
-    turns: String,
+    program_scheduler: String,
     array: String,
     unfold: String,
     we: String,
@@ -124,11 +125,11 @@ impl View {
         let (design, hardware) = (&plan.design, &plan.design.hardware);
         let timeline = &plan.timeline;
         let slot = plan.estimator.slot();
-        let folded = plan.ways() > 1;
+        let folded = plan.channels() > 1;
         let streams = plan.streams();
         let unpack = streams.intake == Intake::Unpacked;
         let [dead_command_bits, dead_result_bits] = plan.calibration.as_ref().map_or([0, 0], calibration::dead_bits);
-        let estimator = slot.parameters(design, plan.ways());
+        let estimator = slot.parameters(design, plan.channels());
         let estimator = plan.thresholds.error.iter().fold(estimator, |parameters, error| error.parameters(parameters));
         let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
         Self {
@@ -186,18 +187,18 @@ impl View {
 
             element: if folded { "quad" } else { "taxel" },
             elements: plan.elements(),
-            ways: plan.ways(),
+            channels: plan.channels(),
             programs: plan.schedule.programs.len(),
             row_width: row_width(plan),
             operand_width: address_bits(plan.operands.words()),
             component_width: address_bits(3 * plan.elements()),
             data_bits: hardware.data_bits,
-            vector_bits: plan.ways() * hardware.data_bits as usize,
+            vector_bits: plan.channels() * hardware.data_bits as usize,
             u_values: u_values(plan),
 
             bz: verilog(&bz::parameters(plan)),
             cean: verilog(&cean::parameters(plan)),
-            turns: verilog(&turns::parameters(plan)),
+            program_scheduler: verilog(&program_scheduler::parameters(plan)),
             array: verilog(&array::parameters(plan)),
             unfold: verilog(&unfold::parameters(plan)),
             we: verilog(&we::parameters(plan)),
@@ -227,11 +228,11 @@ fn u_values(plan: &Plan) -> String {
     if !factors.has_wide_data() {
         return "taxels".to_owned();
     }
-    let upper = |way: usize| {
-        let end = (way + 1) * factors.data_bits as usize;
+    let upper = |channel: usize| {
+        let end = (channel + 1) * factors.data_bits as usize;
         format!("taxels[{}:{}]", end - 1, end - factors.outside_bits() as usize)
     };
-    format!("{{{}}}", (0..plan.ways()).rev().map(upper).collect::<Vec<_>>().join(", "))
+    format!("{{{}}}", (0..plan.channels()).rev().map(upper).collect::<Vec<_>>().join(", "))
 }
 
 /// The module of the core and its text, with nets marked for a logic analyser if `debug`.
@@ -286,7 +287,7 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     if plan.calibration.as_ref().is_none_or(|of| of.power_up.dead.room == 0) {
         without.push("sptfra_dead_bank");
     }
-    if plan.ways() > 1 {
+    if plan.channels() > 1 {
         without.push("sptfra_coefficients");
     }
     without

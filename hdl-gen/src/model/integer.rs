@@ -6,7 +6,7 @@ use golden::products::{ByPq, Number, Scalar, Step, put_moments};
 use crate::plan::Plan;
 use crate::plan::format::{FRICTION_FRACTION, round_shift};
 use crate::plan::matrix::product;
-use crate::plan::product::{SHARE_ROW, sum_row, sum_way};
+use crate::plan::product::{SHARE_ROW, sum_channel, sum_row};
 use crate::plan::vector_formats::ARM_FRACTION;
 
 /// The integers of a plan. Order of summation does not matter: every sum is exact in its width, by the bounds of the
@@ -37,9 +37,9 @@ impl<const W: usize> Number<W> for Integer<'_> {
         let matrix = &self.plan.matrices[step.matrix];
         for (row, result) in matrix.rows.iter().zip(result) {
             let mut sums = [0; W];
-            for (column, ways) in row {
-                for ((sum, &way), value) in sums.iter_mut().zip(ways).zip(operand[*column as usize]) {
-                    *sum += product(way, value, matrix.dropped);
+            for (column, channels) in row {
+                for ((sum, &channel), value) in sums.iter_mut().zip(channels).zip(operand[*column as usize]) {
+                    *sum += product(channel, value, matrix.dropped);
                 }
             }
             *result = std::array::from_fn(|class| round_shift(sums[class ^ step.parity], shift));
@@ -55,14 +55,17 @@ impl<const W: usize> Number<W> for Integer<'_> {
     }
 
     fn sums(&self, index: usize, pull: &[[i64; W]], weight: &[[i64; W]]) -> ByPq<i64> {
-        let Some(lead) = self.plan.products[index].lead else { return ByPq::default() };
-        let matrix = &self.plan.matrices[lead.matrix];
+        let Some(preload) = self.plan.products[index].preload else { return ByPq::default() };
+        let matrix = &self.plan.matrices[preload.matrix];
         let operand: [Vec<i64>; W] =
-            std::array::from_fn(|way| pull.iter().chain(weight).map(|element| element[way]).collect());
-        let row = |row: usize, way: usize| round_shift(matrix.row_product(row, way, &operand[way]), lead.shift);
-        let mut sums: ByPq<i64> = std::array::from_fn(|p| std::array::from_fn(|q| row(sum_row(p, q), sum_way(p, q))));
+            std::array::from_fn(|channel| pull.iter().chain(weight).map(|element| element[channel]).collect());
+        let row = |row: usize, channel: usize| {
+            round_shift(matrix.row_product(row, channel, &operand[channel]), preload.shift)
+        };
+        let mut sums: ByPq<i64> =
+            std::array::from_fn(|p| std::array::from_fn(|q| row(sum_row(p, q), sum_channel(p, q))));
         for (p, sums) in sums.iter_mut().enumerate().skip(2).take(3) {
-            sums[0] -= row(SHARE_ROW, sum_way(p, 0));
+            sums[0] -= row(SHARE_ROW, sum_channel(p, 0));
         }
         sums
     }

@@ -22,7 +22,7 @@ use super::schedule::Schedule;
 use super::smoothing::SmoothingPlan;
 use super::standard_error::StandardErrorPlan;
 use super::vector_formats::{Formats, arms};
-use super::{Condition, Nnz, Plan, Thresholds, elements, ways};
+use super::{Condition, Nnz, Plan, Thresholds, channels, elements};
 use crate::blocks;
 use crate::cores::{DspBlock, LONG_BITS, Multiplier};
 use crate::estimators::{EstimatorPlan, Given};
@@ -89,11 +89,11 @@ impl Work {
     /// Lays the work out on the lanes of `design`, which differs from the one it is of in nothing else.
     pub(super) fn on_lanes(&self, design: &Design) -> Plan {
         let hardware = &design.hardware;
-        let (elements, ways) = (elements(design), ways(design));
+        let (elements, channels) = (elements(design), channels(design));
         let schedule =
-            Schedule::new(&self.products, &self.matrices, hardware.lanes / ways, hardware.lanes > MANY_LANES);
+            Schedule::new(&self.products, &self.matrices, hardware.lanes / channels, hardware.lanes > MANY_LANES);
         let Formats { stress, u, .. } = self.formats;
-        let estimator = EstimatorPlan::new(&Given { design, elements, ways, stress, u: u.narrowed() });
+        let estimator = EstimatorPlan::new(&Given { design, elements, channels, stress, u: u.narrowed() });
         let mut plan = Plan {
             design: design.clone(),
             condition: self.condition,
@@ -101,7 +101,7 @@ impl Work {
             matrices: self.matrices.clone(),
             products: self.products.clone(),
             formats: self.formats,
-            arms: if ways == 1 { arms(&design.sensor) } else { Vec::new() },
+            arms: if channels == 1 { arms(&design.sensor) } else { Vec::new() },
             counts: self.counts.clone(),
             calibration: self.calibration.clone(),
             dead: self.dead.clone(),
@@ -110,7 +110,7 @@ impl Work {
             smoothing: SmoothingPlan::new(design),
             thresholds: self.thresholds,
             estimator,
-            operands: OperandLayout::new(&self.products, elements, ways as u32 * hardware.data_bits),
+            operands: OperandLayout::new(&self.products, elements, channels as u32 * hardware.data_bits),
             schedule,
             timeline: Timeline::default(),
             resources: Resources::default(),

@@ -9,7 +9,7 @@ use golden::products::{Form, Source};
 use golden::reduced::ReducedMatrices;
 
 use super::PlanError;
-use super::matrix::{RealRows, one_way};
+use super::matrix::{RealRows, one_channel};
 
 /// The matrices of a plan after the filter.
 pub enum Filtered<'a> {
@@ -59,13 +59,13 @@ impl<'a> Filtered<'a> {
     pub fn rows(&self, form: &Form, scale: f64) -> RealRows {
         let factor = form.sign * scale;
         let mut rows = match (self, form.source) {
-            (Self::Thirteen(filtered, _), Source::Thirteen(name)) => one_way(filtered.get(name), factor),
+            (Self::Thirteen(filtered, _), Source::Thirteen(name)) => one_channel(filtered.get(name), factor),
             (Self::Thirteen(_, matrices), Source::Ten(ReducedName::C33)) => {
-                one_way(&(&matrices.c33.dense()).into(), factor)
+                one_channel(&(&matrices.c33.dense()).into(), factor)
             }
             (Self::Ten(ten, _), Source::Ten(name)) => {
                 let scaled = |row: &Vec<(u32, [f64; CLASSES])>| {
-                    row.iter().map(|&(column, ways)| (column, ways.map(|value| factor * value))).collect()
+                    row.iter().map(|&(column, channels)| (column, channels.map(|value| factor * value))).collect()
                 };
                 ten.get(name).rows.iter().map(scaled).collect()
             }

@@ -1,9 +1,9 @@
-//! Layout of the lanes' operand memories: which vector stands where.
+//! Layout of the PEs' operand memories: which vector stands where.
 
 use super::memory::memory;
 use super::product::{Product, Vector};
 
-/// Where a vector stands in every lane's operand memory.
+/// Where a vector stands in every PE's operand memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// From this word on.
@@ -21,7 +21,7 @@ pub struct OperandLayout {
     fixed: Vec<Vector>,
     /// The vector that takes the stress's place once no product reads the stress any more.
     reuses_stress: Option<Vector>,
-    /// Frames whose residual has a place: a second bank of it stands behind everything else.
+    /// Frames whose residual has a buffer: a second bank of it stands behind everything else.
     residuals: usize,
 }
 
@@ -36,7 +36,7 @@ impl OperandLayout {
     pub fn new(products: &[Product], elements: usize, bits: u32) -> Self {
         let last_reader = products.iter().rposition(|product| product.operands.contains(&Vector::Stress));
         // Programs of several frames take turns, so that the stress of the next one may be there already.
-        let one_frame = products.iter().all(|product| product.program == 0 && product.lead.is_none());
+        let one_frame = products.iter().all(|product| product.program == 0 && product.preload.is_none());
         let comes_later = |vector: Vector| {
             let producer = products.iter().position(|product| product.result == vector);
             one_frame && producer > last_reader
@@ -63,7 +63,7 @@ impl OperandLayout {
         layout
     }
 
-    /// Frames whose residual has a place.
+    /// Frames whose residual has a buffer.
     pub fn residuals(&self) -> usize {
         self.residuals
     }
@@ -78,7 +78,7 @@ impl OperandLayout {
         self.elements
     }
 
-    /// Words of each lane's operand memory.
+    /// Words of each PE's operand memory.
     pub fn words(&self) -> usize {
         (2 + self.fixed.len() + (self.residuals - 1) * RESIDUAL.len()) * self.elements
     }

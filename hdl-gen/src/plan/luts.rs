@@ -67,13 +67,13 @@ pub fn features(plan: &Plan) -> [(&'static str, &'static str, f64); FEATURES] {
     let points = grid.map_or(0.0, |(search, _)| (search.parallel * search.taxels) as f64);
     let [one, lanes, width] = [1.0, hardware.lanes as f64, f64::from(hardware.data_bits) / 27.0];
     let [line, network] = [grid.is_none(), grid.is_some_and(|(_, network)| network)].map(flag);
-    let (reduced, places) = (flag(plan.ways() > 1), plan.places_for_dead() as f64);
+    let (reduced, places) = (flag(plan.channels() > 1), plan.places_for_dead() as f64);
     let [beat, words] = [streams.conversions() as f64, streams.words() as f64];
     let [ram, curve, counts] = [plan.calibration.is_some(), input.curve.is_some(), input.counts()].map(flag);
     let [control, float] = [hardware.control, hardware.samples == Samples::Float32].map(flag);
     [
         ("spmv_array", "one", one),
-        ("spmv_array", "programs", plan.walkers() as f64),
+        ("spmv_array", "programs", plan.pes() as f64),
         ("spmv_array", "lanes x bits", lanes * f64::from(hardware.coefficient_bits + hardware.data_bits)),
         ("spmv_array", "wide", flag(plan.factors().multipliers() > 1)),
         ("we", "one", width),

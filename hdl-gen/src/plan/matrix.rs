@@ -12,7 +12,7 @@ pub const ANY_LSB: i32 = -900;
 /// Coefficients with fewer significant bits than this reconstruct nothing worth having.
 const FEWEST_USEFUL_BITS: u32 = 6;
 
-/// A column and its coefficients, one a way. In the paper's plan there is one way; in the reduced plan the four ways
+/// A column and its coefficients, one a channel. The paper's plan has one channel; in the reduced plan the four channels
 /// are the parity classes of the operand.
 pub type Entry = (u32, [i32; CLASSES]);
 
@@ -28,7 +28,7 @@ pub struct QuantisedMatrix {
     pub rows: Vec<Vec<Entry>>,
     /// Exponent of a coefficient's last bit.
     pub lsb: i32,
-    /// Largest row sum of coefficient magnitudes, of any way.
+    /// Largest row sum of coefficient magnitudes, of any channel.
     pub row_sum: i64,
     /// Bits of each product that the lanes drop before they add it.
     pub dropped: u32,
@@ -43,8 +43,8 @@ pub const fn product(coefficient: i32, value: i64, dropped: u32) -> i64 {
     ((coefficient as i128 * value as i128 + (1 << (dropped - 1))) >> dropped) as i64
 }
 
-/// The one way of the paper's plan, times `factor`.
-pub fn one_way(matrix: &CsrMatrix<f64>, factor: f64) -> RealRows {
+/// The one channel of the paper's plan, times `factor`.
+pub fn one_channel(matrix: &CsrMatrix<f64>, factor: f64) -> RealRows {
     let row = |row: nalgebra_sparse::csr::CsrRow<f64>| {
         let entries = row.col_indices().iter().zip(row.values());
         entries.map(|(&column, &value)| (column as u32, [factor * value, 0.0, 0.0, 0.0])).collect()
@@ -99,17 +99,18 @@ impl QuantisedMatrix {
 
     /// From coefficients that are integers already.
     pub fn from_rows(name: &str, rows: Vec<Vec<Entry>>, lsb: i32) -> Self {
-        let sum =
-            |row: &Vec<Entry>, way: usize| -> i64 { row.iter().map(|(_, ways)| i64::from(ways[way].abs())).sum() };
-        let row_sum = rows.iter().flat_map(|row| (0..CLASSES).map(|way| sum(row, way))).max().unwrap_or(0);
+        let sum = |row: &Vec<Entry>, channel: usize| -> i64 {
+            row.iter().map(|(_, channels)| i64::from(channels[channel].abs())).sum()
+        };
+        let row_sum = rows.iter().flat_map(|row| (0..CLASSES).map(|channel| sum(row, channel))).max().unwrap_or(0);
         Self { name: name.to_owned(), rows, lsb, row_sum, dropped: 0 }
     }
 
     /// Its image at the diagonal of a grid of `side` by `side` quads.
     #[must_use]
     pub fn mirrored(&self, side: usize) -> Self {
-        let entry = |&(column, ways): &Entry| {
-            (mirror(column as usize, side) as u32, std::array::from_fn(|class| ways[swapped(class)]))
+        let entry = |&(column, channels): &Entry| {
+            (mirror(column as usize, side) as u32, std::array::from_fn(|class| channels[swapped(class)]))
         };
         let row = |row: usize| self.rows[mirror(row, side)].iter().map(entry).collect();
         Self { rows: (0..self.rows.len()).map(row).collect(), ..self.clone() }
@@ -141,30 +142,33 @@ impl QuantisedMatrix {
     pub fn rounding(&self) -> f64 {
         // A rounding is anywhere in a step.
         let of_step = 1.0 / 12.0;
-        let way = |way: usize| {
-            let values = || self.rows.iter().flatten().map(move |(_, ways)| f64::from(ways[way]));
+        let channel = |channel: usize| {
+            let values = || self.rows.iter().flatten().map(move |(_, channels)| f64::from(channels[channel]));
             let squares: f64 = values().map(|value| value * value).sum();
             if squares > 0.0 { values().count() as f64 * of_step / squares } else { 0.0 }
         };
-        (0..CLASSES).map(way).fold(0.0, f64::max).sqrt()
+        (0..CLASSES).map(channel).fold(0.0, f64::max).sqrt()
     }
 
-    /// Row `row` times one way's `operand` in the accumulator, exactly.
-    pub fn row_product(&self, row: usize, way: usize, operand: &[i64]) -> i64 {
-        self.rows[row].iter().map(|&(column, ways)| product(ways[way], operand[column as usize], self.dropped)).sum()
+    /// Row `row` times one channel's `operand` in the accumulator, exactly.
+    pub fn row_product(&self, row: usize, channel: usize, operand: &[i64]) -> i64 {
+        self.rows[row]
+            .iter()
+            .map(|&(column, channels)| product(channels[channel], operand[column as usize], self.dropped))
+            .sum()
     }
 
-    /// Largest row sum of the magnitudes of the four-way matrix's unfolded coefficients, times four: with it, a bound
+    /// Largest row sum of the magnitudes of the four-channel matrix's unfolded coefficients, times four: with it, a bound
     /// of the taxels' operands is one of the taxels' results.
     pub fn unfolded_row_sum(&self) -> i64 {
-        let mirrored = |ways: &[i32; CLASSES], member: usize| -> i64 {
-            let signed = ways.iter().enumerate().map(|(class, &value)| {
+        let mirrored = |channels: &[i32; CLASSES], member: usize| -> i64 {
+            let signed = channels.iter().enumerate().map(|(class, &value)| {
                 if golden::parity::sign(class, member) < 0.0 { -i64::from(value) } else { i64::from(value) }
             });
             signed.sum::<i64>().abs()
         };
         let of_row = |row: &Vec<Entry>| -> i64 {
-            row.iter().map(|(_, ways)| (0..CLASSES).map(|member| mirrored(ways, member)).sum::<i64>()).sum()
+            row.iter().map(|(_, channels)| (0..CLASSES).map(|member| mirrored(channels, member)).sum::<i64>()).sum()
         };
         self.rows.iter().map(of_row).max().unwrap_or(0)
     }
@@ -182,7 +186,7 @@ mod tests {
         for &(row, column, value) in entries {
             coo.push(row, column, value);
         }
-        one_way(&CsrMatrix::from(&coo), 1.0)
+        one_channel(&CsrMatrix::from(&coo), 1.0)
     }
 
     #[test]

@@ -11,7 +11,6 @@ pub mod crosstalk;
 pub mod curve;
 mod curve_format;
 pub mod dead;
-mod dealing;
 mod durations;
 pub mod energy;
 mod error;
@@ -19,13 +18,13 @@ pub mod factor;
 pub mod filtered;
 pub mod format;
 pub mod gain;
-pub mod lane;
 pub mod layout;
 pub mod luts;
 pub mod matrix;
 pub mod memory;
-mod need;
+mod partition;
 pub mod passes;
+pub mod pe;
 pub mod product;
 pub mod quantise;
 pub mod resources;
@@ -34,6 +33,7 @@ pub mod schedule;
 pub mod smoothing;
 pub mod standard_error;
 pub mod streams;
+mod target_search;
 pub mod vector_formats;
 pub mod words;
 
@@ -129,7 +129,7 @@ pub struct Plan {
     pub thresholds: Thresholds,
     /// The estimator of friction: `CeAn`, and the search in Op.
     pub estimator: EstimatorPlan,
-    /// Vectors in each lane's operand memory.
+    /// Vectors in each PE's operand memory.
     pub operands: OperandLayout,
     /// The lanes' work, cycle by cycle.
     pub schedule: Schedule,
@@ -140,9 +140,9 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Multiply-accumulates of a frame in the lanes, all ways counted.
+    /// Multiply-accumulates of a frame in the lanes, all channels counted.
     pub fn macs(&self) -> u64 {
-        self.schedule.windows.iter().map(|window| window.macs * self.ways() as u64).sum()
+        self.schedule.windows.iter().map(|window| window.macs * self.channels() as u64).sum()
     }
 
     /// What a lane multiplies with.
@@ -150,14 +150,14 @@ impl Plan {
         Factors::of(&self.design)
     }
 
-    /// Multiply-accumulates of a lane in a cycle: the parity classes of the reduced plan, else one.
-    pub fn ways(&self) -> usize {
-        ways(&self.design)
+    /// Lanes of a PE: the parity classes of the reduced plan, else one.
+    pub fn channels(&self) -> usize {
+        channels(&self.design)
     }
 
-    /// Lanes that walk MCSR data of their own: the design's lanes over the ways.
-    pub fn walkers(&self) -> usize {
-        self.schedule.lanes.len()
+    /// PEs, each with MCSR data of its own: the design's lanes over the channels.
+    pub fn pes(&self) -> usize {
+        self.schedule.pes.len()
     }
 
     /// Dead taxels that a frame has room for, in ROM or in the banks of a calibration.
@@ -210,14 +210,14 @@ impl Plan {
     }
 
     /// Index of the first product of `block`, and of the first after it.
-    pub fn turn(&self, block: Block) -> (usize, usize) {
+    pub fn products_of(&self, block: Block) -> (usize, usize) {
         let first = self.products.iter().position(|product| product.block == block).unwrap_or(0);
         let count = self.products.iter().filter(|product| product.block == block).count();
         (first, first + count)
     }
 }
 
-fn ways(design: &Design) -> usize {
+fn channels(design: &Design) -> usize {
     match design.algorithm.plan {
         PlanKind::Paper => 1,
         PlanKind::Reduced => CLASSES,

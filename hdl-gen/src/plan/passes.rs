@@ -1,7 +1,7 @@
 //! The passes of a plan: from the paper's list of products to what the hardware runs.
 //!
 //! Fewer products, fold and mirror are passes over [`ProductList`]; the filter follows, then [`super::quantise`],
-//! [`super::dealing`] and [`bind`]. The paper's plan takes the list as it is, the reduced plan all passes, every one of
+//! [`super::partition`] and [`bind`]. The paper's plan takes the list as it is, the reduced plan all passes, every one of
 //! them exact but for rounding:
 //!
 //! | program | products | result |
@@ -18,7 +18,7 @@ use golden::design::{Design, Filter, Outputs, PlanKind};
 use golden::parity::Quads;
 use golden::products::{Epilogue, ProductList, Step, Vector};
 
-use super::product::{Block, Lead, Product};
+use super::product::{Block, Preload, Product};
 use super::quantise::Quantised;
 
 /// Quads along a side up to which the diagonal mirror is worth a table.
@@ -49,7 +49,7 @@ fn mirrored_side(design: &Design) -> Option<usize> {
     (square && kept && (side.is_power_of_two() || side <= MOST_MIRRORED_SIDE)).then_some(side)
 }
 
-/// The last pass: products of stored matrices, in the blocks that the lanes' turns belong to.
+/// The last pass: products of stored matrices, in the blocks that they belong to.
 pub fn bind(list: &ProductList, quantised: &Quantised) -> Vec<Product> {
     let formats = &quantised.formats;
     let bound = |step: &Step| {
@@ -60,11 +60,11 @@ pub fn bind(list: &ProductList, quantised: &Quantised) -> Vec<Product> {
             _ => formats.of(step.result),
         };
         let shift = |matrix: usize, lsb: i32| (lsb - quantised.matrices[matrix].accumulator_lsb(operand)) as u32;
-        let lead = quantised.sums.filter(|_| step.sums);
-        let (block, program) = turn(step.result, formats.folded.is_some());
+        let preload = quantised.sums.filter(|_| step.sums);
+        let (block, program) = owner(step.result, formats.folded.is_some());
         Product {
             step: Step { matrix, ..step.clone() },
-            lead: lead.map(|matrix| Lead { matrix, shift: shift(matrix, formats.g.lsb) }),
+            preload: preload.map(|matrix| Preload { matrix, shift: shift(matrix, formats.g.lsb) }),
             block,
             program,
             shift: shift(matrix, result.lsb),
@@ -74,7 +74,7 @@ pub fn bind(list: &ProductList, quantised: &Quantised) -> Vec<Product> {
 }
 
 /// Block and program of the product with this result.
-fn turn(result: Vector, reduced: bool) -> (Block, usize) {
+fn owner(result: Vector, reduced: bool) -> (Block, usize) {
     match result {
         Vector::U(_) if !reduced => (Block::Op, 0),
         Vector::Residual(_) => (Block::Co, 1),

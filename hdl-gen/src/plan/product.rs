@@ -8,9 +8,9 @@ use serde::Serialize;
 
 use super::format::round_shift;
 use super::matrix::{Entry, QuantisedMatrix};
-use crate::timing::latency::{VISIT_TO_BUS, WRITE_TO_ISSUE, bus_to_taxels, bus_to_write, taxels_to_write};
+use crate::timing::latency::{TAKE_TO_BUS, WRITE_TO_ISSUE, bus_to_taxels, bus_to_write, taxels_to_write};
 
-/// What becomes of a result, as the visit ROM and the collector (`sptfra_spmv_collector`) have it.
+/// What becomes of a result, as the ROM of write-back slots and the collector (`sptfra_spmv_collector`) have it.
 pub fn destination(result: Vector) -> usize {
     match result {
         Vector::Stress | Vector::Weight | Vector::Pull => 0,
@@ -26,7 +26,7 @@ pub fn destination(result: Vector) -> usize {
 /// The destination of sums over the frame.
 pub const SUMS_DESTINATION: usize = 4;
 
-/// Bits of a destination in the visit ROM: the first eight are all there is without a field.
+/// Bits of a destination in the ROM of write-back slots: the first eight are all there is without a field.
 pub const fn destination_bits(field: bool) -> u32 {
     if field { 4 } else { 3 }
 }
@@ -50,20 +50,20 @@ pub fn spacing(epilogue: Epilogue) -> u64 {
     if epilogue == Epilogue::Part { 2 } else { 1 }
 }
 
-/// Cycles from the collector's visit to the first issue that may read the value as an operand.
-pub fn visit_to_operand(epilogue: Epilogue) -> u64 {
+/// Cycles from taking a result to the first issue that may read the value as an operand.
+pub fn take_to_operand(epilogue: Epilogue) -> u64 {
     let after_bus = match epilogue {
         Epilogue::Part => bus_to_taxels(true) + taxels_to_write(true),
         Epilogue::Store | Epilogue::Unfold | Epilogue::AddStress => bus_to_write(true),
         Epilogue::ClipNegate => bus_to_taxels(false) + taxels_to_write(false),
         Epilogue::Keep | Epilogue::Add(_) => bus_to_write(false),
     };
-    VISIT_TO_BUS + after_bus + WRITE_TO_ISSUE
+    TAKE_TO_BUS + after_bus + WRITE_TO_ISSUE
 }
 
 /// Rows in front of a product's own, whose results are sums over the frame and go to Co.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Lead {
+pub struct Preload {
     /// Index of the stored matrix.
     pub matrix: usize,
     /// Bits dropped, with rounding, between accumulator and result.
@@ -81,17 +81,17 @@ pub const SUM_ROWS: usize = 7;
 /// Elements of a vector, and rows of sums, for which the modules have room at least.
 pub const FEWEST_ELEMENTS: usize = 8;
 const _: () = assert!(SUM_ROWS <= FEWEST_ELEMENTS);
-/// The row of what `|w|` takes from `F_z`, `T_x` and `T_y` for q = 0, each in its [`sum_way`].
+/// The row of what `|w|` takes from `F_z`, `T_x` and `T_y` for q = 0, each in its [`sum_channel`].
 pub const SHARE_ROW: usize = 3;
 
 /// The row that holds `G_pq`, p as in [`golden::products::ByPq`]: row q has those of `F_x`, `F_y`, `F_z` and `T_z`, each
-/// in a way of its own, see [`sum_way`], row 4 + q those of `T_x` and `T_y`.
+/// in a channel of its own, see [`sum_channel`], row 4 + q those of `T_x` and `T_y`.
 pub fn sum_row(p: usize, q: usize) -> usize {
     if matches!(p, 3 | 4) { 4 + q } else { q }
 }
 
-/// The way in which its row holds `G_pq`: the class of the operand on which the sum depends. `p` from 0.
-pub fn sum_way(p: usize, q: usize) -> usize {
+/// The channel in which its row holds `G_pq`: the class of the operand on which the sum depends. `p` from 0.
+pub fn sum_channel(p: usize, q: usize) -> usize {
     let of_p = [1, 2, 0, 2, 1, 3];
     let of_q = [0, 1, 2];
     of_p[p] ^ of_q[q]
@@ -104,7 +104,7 @@ pub struct Product {
     /// What it computes.
     pub step: Step,
     /// Rows in front of the matrix, of the same operands.
-    pub lead: Option<Lead>,
+    pub preload: Option<Preload>,
     /// The block it belongs to.
     pub block: Block,
     /// Its program: products of one program follow each other at fixed distances.
@@ -128,8 +128,8 @@ impl Product {
         round_shift(matrix.largest_sum(operand_bound) as i64, shift.min(62))
     }
 
-    /// For each class of the result, the way of the lanes that computes it.
-    pub fn ways(&self) -> [usize; CLASSES] {
+    /// For each class of the result, the channel that computes it.
+    pub fn channels(&self) -> [usize; CLASSES] {
         std::array::from_fn(|class| if self.mirrored.is_some() { swapped(class) } else { class } ^ self.parity)
     }
 

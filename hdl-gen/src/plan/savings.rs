@@ -19,8 +19,8 @@ pub struct Saving {
 
 /// The steps in the order in which they are taken; empty for the paper's plan.
 pub fn savings(plan: &Plan) -> Vec<Saving> {
-    let ways = plan.ways();
-    if ways == 1 {
+    let channels = plan.channels();
+    if channels == 1 {
         return Vec::new();
     }
     let all = plan.taxels() * plan.taxels();
@@ -36,13 +36,15 @@ pub fn savings(plan: &Plan) -> Vec<Saving> {
         steps.push(whole("resultants only", &paper.fewer_products(false)));
     }
     let of_products = || plan.products.iter().filter(|product| product.coefficients == Coefficients::Rom);
-    let of_matrix = |index: usize| ways * plan.matrices[index].nnz();
-    let block = ways * plan.elements() * plan.elements();
-    let sums: usize = of_products().filter_map(|product| product.lead).map(|lead| of_matrix(lead.matrix)).sum();
+    let of_matrix = |index: usize| channels * plan.matrices[index].nnz();
+    let block = channels * plan.elements() * plan.elements();
+    let sums: usize =
+        of_products().filter_map(|product| product.preload).map(|preload| of_matrix(preload.matrix)).sum();
     let whole = of_products().count() * block + sums;
     let kept = of_products().map(|product| of_matrix(product.matrix)).sum::<usize>() + sums;
     // The friction products have no coefficients of their own.
-    let friction: usize = plan.schedule.windows.iter().map(|window| ways * window.macs as usize).sum::<usize>() - kept;
+    let friction: usize =
+        plan.schedule.windows.iter().map(|window| channels * window.macs as usize).sum::<usize>() - kept;
     steps.push(Saving { step: "parity fold", macs: whole + friction, coefficients: whole });
     let mirrored = of_products().filter(|product| product.mirrored.is_some());
     let saved: usize = mirrored.map(|product| of_matrix(product.matrix)).sum();

@@ -1,23 +1,23 @@
-//! Who computes what, and when: the static schedule of the SpMV lanes.
+//! Who computes what, and when: the static schedule of the SpMV PEs.
 //!
-//! Nothing in the lanes' timing depends on data: a frame is laid out here, cycle by cycle, and the hardware needs
+//! Nothing in the PEs' timing depends on data: a frame is laid out here, cycle by cycle, and the hardware needs
 //! neither arbiter nor stall. The MACs of a product form one long stream, row after row,
-//! that is cut into equal pieces, one per lane: all lanes finish together. A row cut in two leaves its end as a *tail*
-//! in the next lane, kept in that lane's carry register, and its beginning as a *head* that adds the carry.
+//! that is cut into equal pieces, one per PE: all PEs finish together. A row cut in two leaves its end as a *tail*
+//! in the next PE, kept in that PE's carry register, and its beginning as a *head* that adds the carry.
 //! A collector takes one result a cycle, in the order in which they become ready. Where rows are so short that a
-//! lane would finish another before there is room for it, idle cycles are inserted.
+//! PE would finish another before there is room for it, idle cycles are inserted.
 //!
 //! Products that always follow each other at the same distance form a *program*. The paper's plan is one program a
-//! frame, and so are resultants alone; a field that the lanes put together takes two more. The hardware starts a program
-//! when its data and the lanes are there.
+//! frame, and so are resultants alone; a field that the PEs put together takes two more. The hardware starts a program
+//! when its data and the PEs are there.
 
 use serde::Serialize;
 
-use super::dealing::{Dealer, Dealt, Stream};
-pub use super::lane::{LaneProgram, MAX_SEGMENT, RESULT_PLACES, Segment, SegmentKind, Visit};
 use super::matrix::{Entry, QuantisedMatrix};
-use super::product::{Epilogue, Product, Vector, mirror, spacing, visit_to_operand};
-use crate::timing::latency::{TURN_GAP, collector_jump};
+use super::partition::{Partitioner, Stream, Timing};
+pub use super::pe::{MAX_SEGMENT, PeProgram, RESULT_BUFFERS, Segment, SegmentKind, WriteBackSlot};
+use super::product::{Epilogue, Product, Vector, mirror, spacing, take_to_operand};
+use crate::timing::latency::{PROGRAM_GAP, collector_jump};
 
 /// When a product runs, in cycles from the first issue of its program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -28,7 +28,7 @@ pub struct Window {
     pub length: u64,
     /// Idle cycles before `start`, until every MAC finds its operand.
     pub wait: u64,
-    /// MACs of all lanes in this window; with four ways a lane counts once.
+    /// MACs of all PEs in this window; with four channels a PE counts once.
     pub macs: u64,
 }
 
@@ -39,91 +39,91 @@ pub struct Program {
     pub first: usize,
     /// The one after its last.
     pub end: usize,
-    /// Address of its first word in the values and columns ROMs, the same in every lane.
+    /// Address of its first word in the values and columns ROMs, the same in every PE.
     pub word: usize,
-    /// Address of its first word in the MACs-per-row ROMs, the same in every lane.
+    /// Address of its first word in the MACs-per-row ROMs, the same in every PE.
     pub segment: usize,
-    /// Address of its first visit.
-    pub visit: usize,
+    /// Address of its first write-back slot.
+    pub slot: usize,
     /// Cycles from the first issue to the last, inclusive.
     pub length: u64,
-    /// Cycle of its first visit.
-    pub first_visit: u64,
-    /// Cycle of its last visit.
-    pub last_visit: u64,
+    /// Cycle of its first write-back slot.
+    pub first_slot: u64,
+    /// Cycle of its last write-back slot.
+    pub last_slot: u64,
     /// Cycles without issue between the last issue of whatever program runs before and its first, at least.
     pub gap: u64,
 }
 
-/// The lanes' work for one frame.
+/// The PEs' work for one frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Schedule {
-    /// Per lane.
-    pub lanes: Vec<LaneProgram>,
+    /// Per PE.
+    pub pes: Vec<PeProgram>,
     /// Per program.
     pub programs: Vec<Program>,
     /// Per product.
     pub windows: Vec<Window>,
     /// Every result in the order in which the collector takes them, program after program.
-    pub visits: Vec<Visit>,
+    pub slots: Vec<WriteBackSlot>,
     /// Whether the collector looks ahead to the next program while the last result of one waits.
     pub ahead: bool,
 }
 
 impl Schedule {
-    /// Lays out `products` on `lanes` lanes; the products of a program stand next to each other. The collector looks
+    /// Lays out `products` on `pes` PEs; the products of a program stand next to each other. The collector looks
     /// `ahead` to the next program, or not.
-    pub fn new(products: &[Product], matrices: &[QuantisedMatrix], lanes: usize, ahead: bool) -> Self {
-        let mut dealer = Dealer::new(lanes);
+    pub fn new(products: &[Product], matrices: &[QuantisedMatrix], pes: usize, ahead: bool) -> Self {
+        let mut partitioner = Partitioner::new(pes);
         let mut stored = vec![false; matrices.len()];
         let mut programs = Vec::new();
         let mut windows: Vec<Window> = Vec::with_capacity(products.len());
         let mut first = 0;
         for chunk in products.chunk_by(|one, other| one.program == other.program) {
-            let (word, segment, visit) = dealer.begin();
+            let (word, segment, slot) = partitioner.begin();
             let mut made: Vec<Made> = Vec::new();
             let mut next_start = 0;
             for (offset, product) in chunk.iter().enumerate() {
                 let main = &matrices[product.matrix];
-                let lead = product.lead.as_ref().map(|lead| &matrices[lead.matrix]);
+                let preload = product.preload.as_ref().map(|preload| &matrices[preload.matrix]);
                 let new = |matrix: usize| !std::mem::replace(&mut stored[matrix], true);
                 let index = (first + offset) as u32;
-                let work = Work { product, index, lead, main, start: next_start.max(addend(product, &made)) };
-                let first_visit = dealer.visits.len();
-                let (Dealt { start, length, last_visit }, macs) = work.deal(&mut dealer, &made, new);
+                let work = Work { product, index, preload, main, start: next_start.max(addend(product, &made)) };
+                let first_slot = partitioner.slots.len();
+                let (Timing { start, length, last_slot }, macs) = work.partition(&mut partitioner, &made, new);
                 windows.push(Window { start, length, wait: start - next_start, macs });
-                made.push(Made::new(product, main.rows.len(), &dealer.visits[first_visit..], last_visit));
+                made.push(Made::new(product, main.rows.len(), &partitioner.slots[first_slot..], last_slot));
                 next_start = start + length;
             }
-            let cycles = |visit: Option<&Visit>| visit.map_or(0, |visit| visit.cycle);
+            let cycles = |slot: Option<&WriteBackSlot>| slot.map_or(0, |slot| slot.cycle);
             programs.push(Program {
                 first,
                 end: first + chunk.len(),
                 word,
                 segment,
-                visit,
+                slot,
                 length: next_start,
-                first_visit: cycles(dealer.visits.get(visit)),
-                last_visit: cycles(dealer.visits.last()),
+                first_slot: cycles(partitioner.slots.get(slot)),
+                last_slot: cycles(partitioner.slots.last()),
                 gap: 0,
             });
             first += chunk.len();
         }
-        let longest_drain = programs.iter().map(|program| program.last_visit - program.length).max().unwrap_or(0);
+        let longest_drain = programs.iter().map(|program| program.last_slot - program.length).max().unwrap_or(0);
         for program in &mut programs {
             program.gap = gap(program, longest_drain, longest_drain + collector_jump(ahead));
         }
-        Self { lanes: dealer.programs, programs, windows, visits: dealer.visits, ahead }
+        Self { pes: partitioner.programs, programs, windows, slots: partitioner.slots, ahead }
     }
 
-    /// Words in the values and columns ROMs: the longest lane's.
+    /// Words in the values and columns ROMs: the longest PE's.
     pub fn word_depth(&self) -> usize {
-        self.lanes.iter().map(|lane| lane.words.len()).max().unwrap_or(0).max(1)
+        self.pes.iter().map(|pe| pe.words.len()).max().unwrap_or(0).max(1)
     }
 
-    /// Words in the MACs-per-row ROMs: the longest lane's.
+    /// Words in the MACs-per-row ROMs: the longest PE's.
     pub fn segment_depth(&self) -> usize {
-        self.lanes.iter().map(|lane| lane.segments.len()).max().unwrap_or(0).max(1)
+        self.pes.iter().map(|pe| pe.segments.len()).max().unwrap_or(0).max(1)
     }
 
     /// Cycles from a program's first issue to its last, all programs of a frame.
@@ -131,18 +131,18 @@ impl Schedule {
         self.programs.iter().map(|program| program.length).sum()
     }
 
-    /// Share of the lane cycles between first and last issue that do a MAC, 0 to 1.
+    /// Share of the PE cycles between first and last issue that do a MAC, 0 to 1.
     pub fn busy_fraction(&self) -> f64 {
         let macs: u64 = self.windows.iter().map(|window| window.macs).sum();
-        macs as f64 / (self.issue_cycles() * self.lanes.len() as u64) as f64
+        macs as f64 / (self.issue_cycles() * self.pes.len() as u64) as f64
     }
 }
 
-/// A product to be dealt.
+/// A product to be distributed over the PEs.
 struct Work<'a> {
     product: &'a Product,
     index: u32,
-    lead: Option<&'a QuantisedMatrix>,
+    preload: Option<&'a QuantisedMatrix>,
     main: &'a QuantisedMatrix,
     start: u64,
 }
@@ -156,8 +156,13 @@ impl<'a> Work<'a> {
     }
 
     /// Starts while the operand is still being made, if its MACs find what they need. Returns its MACs, too.
-    fn deal(&self, dealer: &mut Dealer, made: &[Made], mut new: impl FnMut(usize) -> bool) -> (Dealt, u64) {
-        let rows = Stream::rows_of(self.lead, self.main);
+    fn partition(
+        &self,
+        partitioner: &mut Partitioner,
+        made: &[Made],
+        mut new: impl FnMut(usize) -> bool,
+    ) -> (Timing, u64) {
+        let rows = Stream::rows_of(self.preload, self.main);
         let macs = rows.iter().map(|(_, entries)| entries.len() as u64).sum();
         let sources: Vec<Option<&Made>> =
             self.product.operands.iter().map(|&operand| made.iter().find(|made| made.result.holds(operand))).collect();
@@ -168,7 +173,7 @@ impl<'a> Work<'a> {
             sources[operand].map_or(0, |made| made.readable[element])
         };
         let stream = self.stream(rows, new(self.product.matrix), self.start);
-        (dealer.deal(&stream, &readable), macs)
+        (partitioner.partition(&stream, &readable), macs)
     }
 }
 
@@ -176,35 +181,35 @@ impl<'a> Work<'a> {
 struct Made {
     result: Vector,
     /// Cycle in which the last result is taken.
-    last_visit: u64,
+    last_slot: u64,
     /// For each element, the first cycle in which a MAC may be issued that reads it.
     readable: Vec<u64>,
 }
 
 impl Made {
-    fn new(product: &Product, size: usize, visits: &[Visit], last_visit: u64) -> Self {
+    fn new(product: &Product, size: usize, slots: &[WriteBackSlot], last_slot: u64) -> Self {
         let mut readable = vec![0; size];
-        for visit in visits {
+        for slot in slots {
             // Sums over the frame are no operand.
-            if let Some(element) = readable.get_mut(visit.row as usize) {
-                *element = visit.cycle + visit_to_operand(product.epilogue);
+            if let Some(element) = readable.get_mut(slot.row as usize) {
+                *element = slot.cycle + take_to_operand(product.epilogue);
             }
         }
-        Self { result: product.result, last_visit, readable }
+        Self { result: product.result, last_slot, readable }
     }
 }
 
 /// When the addend of a product is there, as far as its own program makes it.
 fn addend(product: &Product, made: &[Made]) -> u64 {
     let Epilogue::Add(partial) = product.epilogue else { return 0 };
-    made.iter().find(|made| made.result.holds(partial)).map_or(0, |made| made.last_visit)
+    made.iter().find(|made| made.result.holds(partial)).map_or(0, |made| made.last_slot)
 }
 
 /// The gap before a program: the results of the one before, `longest_drain` cycles after its last issue at most, must
-/// have left the lanes, and the collector gone on, `left` cycles after that issue, before the first of this one is ready;
+/// have left the PEs, and the collector gone on, `left` cycles after that issue, before the first of this one is ready;
 /// and it must have done so before the one after it is started: it remembers one.
 fn gap(program: &Program, longest_drain: u64, left: u64) -> u64 {
-    let before_result = left.saturating_sub(program.first_visit);
+    let before_result = left.saturating_sub(program.first_slot);
     let before_start = (longest_drain + 1).saturating_sub(program.length);
-    before_result.max(before_start).max(TURN_GAP)
+    before_result.max(before_start).max(PROGRAM_GAP)
 }

@@ -5,16 +5,16 @@
 
 use std::collections::{BTreeSet, VecDeque};
 
+use super::buffers::{FIELD_BUFFERS, INGRESS_FRAMES};
 use super::durations::{Arrival, Durations};
 use super::latency::{
     self, OUTPUT_LATENCY, OUTPUT_SKID, OUTPUT_TO_IDLE, OUTPUT_TO_RELEASE, SEARCH_TO_FRICTION, SEQUENCER_TO_LANES,
-    SUMMARY_LATENCY, TAXELS_TO_CELLS, TAXELS_TO_FIELD, VISIT_TO_RESIDUAL,
+    SUMMARY_LATENCY, TAKE_TO_RESIDUAL, TAXELS_TO_CELLS, TAXELS_TO_FIELD,
 };
-use super::places::{FIELD_PLACES, INGRESS_FRAMES};
 use super::timeline::{INTERVAL_FRAMES, Timeline, mean_interval};
 
-/// Frames whose stress, whose search, and whose field have a place.
-const PLACES: u64 = FIELD_PLACES as u64;
+/// Frames whose stress, whose search, and whose field have a buffer.
+const BUFFERS: u64 = FIELD_BUFFERS as u64;
 /// Cycles after which a frame is taken for lost: a defect.
 const FOREVER: u64 = 100_000_000;
 /// Frames within which a core that keeps up with its source repeats itself.
@@ -66,7 +66,7 @@ struct Control<'a> {
     /// When the next frame's first beat is at its door.
     beat_there: u64,
     idle_since: Option<u64>,
-    stress_places: u64,
+    stress_buffers: u64,
     /// Frames in the ingress FIFO that Bz has not let in: when their first beats came. Empty where the source waits.
     arrivals: VecDeque<u64>,
     /// Frames in the ingress FIFO, with the one that is leaving it.
@@ -78,7 +78,7 @@ struct Control<'a> {
     cean_idle: u64,
     directions: VecDeque<u64>,
     frames_ready: VecDeque<u64>,
-    // Turns
+    // Program scheduler
     lanes_free: u64,
     u_held: u64,
     residual_due: bool,
@@ -113,8 +113,8 @@ struct StageState {
 struct Arriving {
     /// Cycles since its first beat.
     since: u64,
-    /// Elements that had their turn, then cycles in which the last one moved on.
-    turns: usize,
+    /// Elements that were read, then cycles in which the last one moved on.
+    read: usize,
     moved: u64,
     /// It is open for another frame.
     over: bool,
@@ -144,7 +144,7 @@ impl<'a> Control<'a> {
             next_open: 1 + of.unpacking,
             beat_there: 1 + of.unpacking,
             idle_since: Some(0),
-            stress_places: 0,
+            stress_buffers: 0,
             arrivals: VecDeque::new(),
             in_fifo: 0,
             arriving: VecDeque::new(),
@@ -212,7 +212,7 @@ impl<'a> Control<'a> {
         // What was there a cycle ago is there for good.
         let past = self.now.saturating_sub(1);
         let since = |time: u64| if time >= FOREVER { FOREVER } else { time.saturating_sub(past) };
-        let counts = [self.stress_places, self.u_held, self.frames_held, self.fields_held, self.in_fifo as u64];
+        let counts = [self.stress_buffers, self.u_held, self.frames_held, self.fields_held, self.in_fifo as u64];
         let flags = [self.idle_since.is_some(), self.residual_due, self.summary_busy].map(u64::from);
         let line = match self.line {
             Line::Idle { from } => [0, since(from)],
@@ -237,7 +237,7 @@ impl<'a> Control<'a> {
         }
         state.push(self.arriving.len() as u64);
         for frame in &self.arriving {
-            state.extend([frame.since, frame.turns as u64, frame.moved, u64::from(frame.over)]);
+            state.extend([frame.since, frame.read as u64, frame.moved, u64::from(frame.over)]);
         }
         for stage in &self.stages {
             state.extend([stage.ends.map_or(FOREVER, since), since(stage.free)]);
@@ -253,7 +253,7 @@ impl<'a> Control<'a> {
         let stands_still = self.writes.remove(&self.now);
         self.arrive(stands_still);
         let opens = self.opens(offered);
-        self.give_turn();
+        self.start_program();
         if let Some(latency) = self.of.line {
             self.find_line(latency);
         }
@@ -267,7 +267,7 @@ impl<'a> Control<'a> {
         let now = self.now;
         for (_, change) in self.pending.extract_if(.., |&mut (cycle, _)| cycle <= now) {
             match change {
-                Change::StressReleased => self.stress_places -= 1,
+                Change::StressReleased => self.stress_buffers -= 1,
                 Change::Released => self.u_held -= 1,
                 Change::FrameReleased => {
                     self.frames_held -= 1;
@@ -282,8 +282,8 @@ impl<'a> Control<'a> {
 
     /// Bz lets a frame in: a register says so, one cycle after the conditions hold.
     fn opens(&mut self, offered: bool) -> bool {
-        let room = self.directions.iter().filter(|&&there| there <= self.now).count() < PLACES as usize;
-        if self.now < self.next_open || self.now < self.cean_idle || self.stress_places == PLACES || !room {
+        let room = self.directions.iter().filter(|&&there| there <= self.now).count() < BUFFERS as usize;
+        if self.now < self.next_open || self.now < self.cean_idle || self.stress_buffers == BUFFERS || !room {
             return false;
         }
         if *self.idle_since.get_or_insert(self.now) == self.now {
@@ -293,7 +293,7 @@ impl<'a> Control<'a> {
             return false;
         }
         self.idle_since = None;
-        self.stress_places += 1;
+        self.stress_buffers += 1;
         (self.next_open, self.cean_idle) = (FOREVER, FOREVER);
         self.arriving.push_back(Arriving::default());
         true
@@ -301,7 +301,7 @@ impl<'a> Control<'a> {
 
     /// Frames move on in Bz; what is on its way to the lanes' memories does not in this cycle if it `stands_still`.
     fn arrive(&mut self, stands_still: bool) {
-        let Arrival { taken, elements, turn_to_write, last_stress } = &self.of.arrival;
+        let Arrival { taken, elements, read_to_write, last_stress } = &self.of.arrival;
         for frame in &mut self.arriving {
             frame.since += 1;
             if frame.since == *taken {
@@ -311,63 +311,63 @@ impl<'a> Control<'a> {
                 self.cean_idle = self.now + self.of.direction;
                 self.directions.push_back(self.cean_idle);
             }
-            // A register says that all had their turn, a cycle later.
-            if frame.turns == elements.len() && frame.since >= *last_stress && !frame.over {
+            // A register says that all were read, a cycle later.
+            if frame.read == elements.len() && frame.since >= *last_stress && !frame.over {
                 frame.over = true;
                 self.next_open = self.now + 1;
             }
             if stands_still {
                 continue;
             }
-            if let Some(there) = elements.get(frame.turns) {
-                frame.turns += usize::from(*there <= frame.since);
+            if let Some(there) = elements.get(frame.read) {
+                frame.read += usize::from(*there <= frame.since);
             } else {
                 frame.moved += 1;
-                if frame.moved == *turn_to_write {
+                if frame.moved == *read_to_write {
                     self.frames_ready.push_back(self.now + 1);
                 }
             }
         }
-        self.arriving.retain(|frame| !frame.over || frame.moved < *turn_to_write);
+        self.arriving.retain(|frame| !frame.over || frame.moved < *read_to_write);
     }
 
     /// The lanes' next program.
-    fn give_turn(&mut self) {
+    fn start_program(&mut self) {
         if self.now < self.lanes_free {
             return;
         }
         let there = |times: &VecDeque<u64>| times.front().is_some_and(|&cycle| cycle <= self.now);
         let friction = self.friction_known.is_some_and(|cycle| cycle <= self.now);
-        let may_field = there(&self.residuals_there) && friction && self.fields_held < PLACES;
+        let may_field = there(&self.residuals_there) && friction && self.fields_held < BUFFERS;
         let may_residual = self.residual_due && self.residuals_there.len() < self.of.residuals;
         let may_frame = there(&self.frames_ready)
-            && self.u_held < PLACES
-            && self.of.places.is_none_or(|places| self.frames_held < places)
+            && self.u_held < BUFFERS
+            && self.of.buffers.is_none_or(|buffers| self.frames_held < buffers)
             && !self.residual_due
             && (self.of.interval || self.residuals_there.is_empty());
         if may_field {
-            let last_visit = self.start(2);
+            let last_slot = self.start(2);
             self.residuals_there.pop_front();
             self.friction_known = None;
             self.fields_held += 1;
-            self.field_there.push_back(last_visit + self.of.visit_to_taxels + TAXELS_TO_FIELD);
+            self.field_there.push_back(last_slot + self.of.take_to_taxels + TAXELS_TO_FIELD);
         } else if may_residual {
-            let last_visit = self.start(1);
+            let last_slot = self.start(1);
             self.residual_due = false;
-            self.residuals_there.push_back(last_visit + VISIT_TO_RESIDUAL);
+            self.residuals_there.push_back(last_slot + TAKE_TO_RESIDUAL);
         } else if may_frame {
             let first_issue = self.first_issue(0);
-            let last_visit = self.start(0);
+            let last_slot = self.start(0);
             self.frames_ready.pop_front();
             self.u_held += 1;
             self.residual_due = self.of.composed;
-            self.frames_held += u64::from(self.of.places.is_some());
-            let sums_there = first_issue + self.of.last_sum + self.of.visit_to_sums;
+            self.frames_held += u64::from(self.of.buffers.is_some());
+            let sums_there = first_issue + self.of.last_sum + self.of.take_to_sums;
             self.sums_there.push_back(sums_there);
             if self.of.field && !self.of.composed {
                 self.field_there.push_back(sums_there);
             }
-            let complete = last_visit + self.of.visit_to_taxels;
+            let complete = last_slot + self.of.take_to_taxels;
             self.u_there.push_back(complete + if self.of.line.is_some() { TAXELS_TO_CELLS } else { 0 });
             self.pending.push((complete + 1, Change::StressReleased));
         }
@@ -378,13 +378,13 @@ impl<'a> Control<'a> {
         self.now + 1 + latency::start_to_issue(self.of.programs[index].gap)
     }
 
-    /// Starts a program, one cycle after the decision; returns the cycle of its last visit.
+    /// Starts a program, one cycle after the decision; returns the cycle of its last write-back slot.
     fn start(&mut self, index: usize) -> u64 {
         let program = &self.of.programs[index];
         let first_issue = self.first_issue(index);
         self.writes.extend(program.writes.iter().map(|cycle| first_issue + cycle));
         self.lanes_free = first_issue + program.length - 1 - SEQUENCER_TO_LANES;
-        first_issue + program.last_visit
+        first_issue + program.last_slot
     }
 
     fn find_line(&mut self, latency: u64) {

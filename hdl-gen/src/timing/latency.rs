@@ -39,24 +39,24 @@ pub const CREEP: u64 = 2;
 
 /// From a stress to the average with it.
 pub const SMOOTHING: u64 = 4;
-/// From a frame's last average to the first element's turn, where no scale takes longer. A tree finds the largest step
+/// From a frame's last average to the first element's reading, where no scale takes longer. A tree finds the largest step
 /// of a beat.
 pub fn smoothing_decided(samples: usize) -> u64 {
     1 + u64::from(samples.ilog2())
 }
 
-/// From an element's turn to its write to the operand memories: two cycles more where stresses are shifted.
-pub fn turn_to_write(scaled: bool) -> u64 {
+/// From an element's reading to its write to the operand memories: two cycles more where stresses are shifted.
+pub fn read_to_write(scaled: bool) -> u64 {
     if scaled { 6 } else { 4 }
 }
 
-/// From a frame's last stress to the first element's turn, where each frame has a scale of its own. A tree finds the
+/// From a frame's last stress to the first element's reading, where each frame has a scale of its own. A tree finds the
 /// largest stress of a beat.
 pub fn frame_scale(samples: usize) -> u64 {
     5 + u64::from(samples.ilog2())
 }
 
-/// From a taxel's turn to its stress in `CeAn`, where a frame that is kept is read.
+/// From a taxel's reading to its stress in `CeAn`, where a frame that is kept is read.
 pub const TAXEL_TO_CEAN: u64 = 2;
 
 // ---- The array of lanes
@@ -65,12 +65,12 @@ pub const SEQUENCER_TO_LANES: u64 = 1;
 /// From a program's start pulse to its first issue, in the lanes, where `gap` cycles pass without issue from one program
 /// to the next.
 pub fn start_to_issue(gap: u64) -> u64 {
-    2 + SEQUENCER_TO_LANES + gap - TURN_GAP
+    2 + SEQUENCER_TO_LANES + gap - PROGRAM_GAP
 }
 
 /// Without issue when the lanes pass from one program to the next, at least.
-pub const TURN_GAP: u64 = 2;
-/// From the issue of a row's last MAC to its sum standing in the lane's result register.
+pub const PROGRAM_GAP: u64 = 2;
+/// From the issue of a row's last MAC to its sum standing in the PE's result register.
 pub const ISSUE_TO_RESULT: u64 = 7;
 /// From taking a program's last result to taking the next program's first: the order is read from a ROM, whose address is
 /// there `ahead` or goes there then.
@@ -78,7 +78,7 @@ pub fn collector_jump(ahead: bool) -> u64 {
     if ahead { 2 } else { 4 }
 }
 /// From the collector taking a result to its standing on the result bus.
-pub const VISIT_TO_BUS: u64 = 3;
+pub const TAKE_TO_BUS: u64 = 3;
 /// From a write at the array's port to the first issue that may read the word: the write passes a register and enters the
 /// memory; the operand is read two cycles after its issue.
 pub const WRITE_TO_ISSUE: u64 = 0;
@@ -104,8 +104,8 @@ pub fn bus_to_sums(folded: bool) -> u64 {
     if folded { 2 } else { 7 }
 }
 
-/// From the last visit of the residual to the field's program being allowed.
-pub const VISIT_TO_RESIDUAL: u64 = VISIT_TO_BUS + 1;
+/// From taking the last result of the residual to the field's program being allowed.
+pub const TAKE_TO_RESIDUAL: u64 = TAKE_TO_BUS + 1;
 
 // ---- The count of contacts
 /// From the last weights of a frame to its count: a step for each taxel and for the end of each row, and the way through
@@ -135,7 +135,7 @@ const QUOTIENT: u64 = 34;
 pub const OUTPUT_LATENCY: u64 = 13;
 /// From a beat leaving Op to its leaving the core.
 pub const OUTPUT_SKID: u64 = axis_skid::LATENCY as u64;
-/// From the last beat of a frame being read to its places being free.
+/// From the last beat of a frame being read to its buffers being free.
 pub const OUTPUT_TO_RELEASE: u64 = 3;
 /// From the last beat of a frame being read to the start of the next frame's output.
 pub const OUTPUT_TO_IDLE: u64 = 4;

@@ -10,7 +10,7 @@ use hdl_gen::plan::format::FRICTION_FRACTION;
 use hdl_gen::plan::format::{MOST_SHIFT, largest, pow2, round_shift};
 use hdl_gen::plan::matrix::{QuantisedMatrix, product as product_of};
 use hdl_gen::plan::product::{Coefficients, Epilogue, Product, Vector};
-use hdl_gen::plan::product::{SHARE_ROW, SUM_ROWS, sum_row, sum_way};
+use hdl_gen::plan::product::{SHARE_ROW, SUM_ROWS, sum_channel, sum_row};
 use hdl_gen::plan::vector_formats::FoldedFormats;
 use proptest::prelude::*;
 
@@ -24,9 +24,9 @@ fn half(shift: u32) -> i64 {
     if shift == 0 { 0 } else { 1 << (shift - 1) }
 }
 
-/// The largest sum of a row in one way, rounded, for operands up to `bound`; the accumulator fits 48 bits.
-fn largest_result(matrix: &QuantisedMatrix, row: usize, way: usize, bound: i64, shift: u32) -> i64 {
-    let magnitudes = matrix.rows[row].iter().map(|(_, ways)| i64::from(ways[way]).abs());
+/// The largest sum of a row in one channel, rounded, for operands up to `bound`; the accumulator fits 48 bits.
+fn largest_result(matrix: &QuantisedMatrix, row: usize, channel: usize, bound: i64, shift: u32) -> i64 {
+    let magnitudes = matrix.rows[row].iter().map(|(_, channels)| i64::from(channels[channel]).abs());
     let accumulator = magnitudes.map(|value| product_of(value as i32, bound, matrix.dropped)).sum::<i64>();
     assert!(accumulator + half(shift) <= largest(ACCUMULATOR_BITS), "{} row {row}: {accumulator}", matrix.name);
     round_shift(accumulator, shift)
@@ -42,8 +42,8 @@ fn result_lsb_and_bound(product: &Product, folded: &FoldedFormats) -> (i32, i64)
 fn largest_part(plan: &Plan, folded: &FoldedFormats, q: u8) -> i64 {
     let product = plan.products.iter().find(|product| product.result == Vector::Residual(q)).expect("a part");
     let (matrix, bound) = (&plan.matrices[product.matrix], folded.of(product.operand()).bound);
-    let places = (0..matrix.rows.len()).flat_map(|row| (0..CLASSES).map(move |way| (row, way)));
-    places.map(|(row, way)| largest_result(matrix, row, way, bound, product.shift)).max().expect("rows")
+    let places = (0..matrix.rows.len()).flat_map(|row| (0..CLASSES).map(move |channel| (row, channel)));
+    places.map(|(row, channel)| largest_result(matrix, row, channel, bound, product.shift)).max().expect("rows")
 }
 
 /// For every row and way of every product the folded operand that makes its sum largest.
@@ -72,11 +72,11 @@ fn check_folded(plan: &Plan, folded: &FoldedFormats) {
                 assert!(round_shift(accumulator, product.shift) <= bound);
                 continue;
             }
-            for way in 0..CLASSES {
-                let result = largest_result(matrix, row, way, operand.bound, product.shift) + more;
+            for channel in 0..CLASSES {
+                let result = largest_result(matrix, row, channel, operand.bound, product.shift) + more;
                 // Forces may have a tighter bound than the worst r allows: the frames of the model's tests do that.
                 let force = matches!(product.result, Vector::Force(_));
-                assert!(force || result <= bound, "{} row {row} way {way}: {result} of {bound}", matrix.name);
+                assert!(force || result <= bound, "{} row {row} channel {channel}: {result} of {bound}", matrix.name);
             }
         }
     }
@@ -84,15 +84,15 @@ fn check_folded(plan: &Plan, folded: &FoldedFormats) {
 
 /// The frame sums; G30, and those of `T_x` and `T_y` for q = 0, are one less another.
 fn check_sums(plan: &Plan, folded: &FoldedFormats) {
-    let product = plan.products.iter().find(|product| product.lead.is_some()).unwrap();
-    let lead = product.lead.unwrap();
-    let matrix = &plan.matrices[lead.matrix];
+    let product = plan.products.iter().find(|product| product.preload.is_some()).unwrap();
+    let preload = product.preload.unwrap();
+    let matrix = &plan.matrices[preload.matrix];
     assert_eq!((matrix.rows.len(), product.result), (SUM_ROWS, Vector::U(0)));
-    assert_eq!(matrix.accumulator_lsb(folded.weight) + lead.shift as i32, plan.formats.g.lsb);
-    let sum = |row: usize, way: usize| largest_result(matrix, row, way, folded.weight.bound, lead.shift);
+    assert_eq!(matrix.accumulator_lsb(folded.weight) + preload.shift as i32, plan.formats.g.lsb);
+    let sum = |row: usize, channel: usize| largest_result(matrix, row, channel, folded.weight.bound, preload.shift);
     for (p, q) in (0..RESULTANTS).flat_map(|p| (0..3).map(move |q| (p, q))) {
-        let less = if q == 0 && (2..5).contains(&p) { sum(SHARE_ROW, sum_way(p, 0)) } else { 0 };
-        let result = sum(sum_row(p, q), sum_way(p, q));
+        let less = if q == 0 && (2..5).contains(&p) { sum(SHARE_ROW, sum_channel(p, 0)) } else { 0 };
+        let result = sum(sum_row(p, q), sum_channel(p, q));
         assert!(result <= largest(plan.formats.g.bits) && result + less <= plan.formats.g.bound, "G{}{q}", p + 1);
     }
 }
@@ -129,11 +129,11 @@ fn check_unfolded(plan: &Plan, folded: &FoldedFormats) {
         };
         for (row, member) in (0..matrix.rows.len()).flat_map(|row| (0..4).map(move |member| (row, member))) {
             let mut values = vec![0.0; plan.taxels()];
-            for &(column, ways) in &matrix.rows[row] {
+            for &(column, channels) in &matrix.rows[row] {
                 for (s, taxel) in quads.members(column as usize).into_iter().enumerate() {
-                    let weight = |way: usize| {
-                        let result = sign(way ^ product.parity, member);
-                        f64::from(ways[way]) * result * sign(way, s)
+                    let weight = |channel: usize| {
+                        let result = sign(channel ^ product.parity, member);
+                        f64::from(channels[channel]) * result * sign(channel, s)
                     };
                     values[taxel] += (0..CLASSES).map(weight).sum::<f64>();
                 }
@@ -141,14 +141,14 @@ fn check_unfolded(plan: &Plan, folded: &FoldedFormats) {
             for direction in [1.0, -1.0] {
                 let chosen = |&value: &f64| if direction * value > 0.0 { high } else { low };
                 let operand = fold(&quads, &values.iter().map(chosen).collect::<Vec<_>>(), shift);
-                let result = |way: usize| {
+                let result = |channel: usize| {
                     let entries = matrix.rows[row].iter();
-                    let of_entry = |&(column, ways): &(u32, [i32; CLASSES])| {
-                        product_of(ways[way], operand[column as usize][way], matrix.dropped)
+                    let of_entry = |&(column, channels): &(u32, [i32; CLASSES])| {
+                        product_of(channels[channel], operand[column as usize][channel], matrix.dropped)
                     };
                     let sum = entries.map(of_entry).sum();
                     let result = round_shift(sum, product.shift);
-                    if sign(way ^ product.parity, member) < 0.0 { -result } else { result }
+                    if sign(channel ^ product.parity, member) < 0.0 { -result } else { result }
                 };
                 let value = (0..CLASSES).map(result).sum::<i64>();
                 let more = match product.epilogue {
@@ -175,9 +175,9 @@ fn check_rounding(plan: &Plan) {
         assert_eq!(matrix.rows.len(), reduced.get(name).rows.len());
         for (row, (stored, exact)) in matrix.rows.iter().zip(&reduced.get(name).rows).enumerate() {
             assert_eq!(stored.len(), exact.len(), "{name} row {row}");
-            for (&(column, ways), &(exact_column, values)) in stored.iter().zip(exact) {
+            for (&(column, channels), &(exact_column, values)) in stored.iter().zip(exact) {
                 assert_eq!(column, exact_column);
-                for (value, exact) in ways.into_iter().zip(values) {
+                for (value, exact) in channels.into_iter().zip(values) {
                     let error = (f64::from(value) * pow2(matrix.lsb) - sign * exact).abs();
                     assert!(error <= 0.501 * pow2(matrix.lsb), "{name} [{row}, {column}]: off by {error:e}");
                 }

@@ -24,8 +24,8 @@ fn check_worst_cases(plan: &Plan) {
         assert_eq!(matrix.accumulator_lsb(operand_format) + product.shift as i32, result_format.lsb);
         for (row, entries) in matrix.rows.iter().enumerate() {
             let mut operand = vec![0; plan.taxels()];
-            for &(column, ways) in entries {
-                operand[column as usize] = operand_format.bound * i64::from(ways[0].signum());
+            for &(column, channels) in entries {
+                operand[column as usize] = operand_format.bound * i64::from(channels[0].signum());
             }
             let accumulator = matrix.row_product(row, 0, &operand);
             assert!(accumulator + half <= largest(ACCUMULATOR_BITS), "{} row {row}: {accumulator}", matrix.name);
@@ -44,7 +44,7 @@ fn check_worst_cases(plan: &Plan) {
     }
 }
 
-/// Widths of vectors and coefficients; each row in order, in as many ways as the plan has.
+/// Widths of vectors and coefficients; each row in order, in as many channels as the plan has.
 pub fn check_widths(plan: &Plan) {
     let hardware = &plan.design.hardware;
     let mut formats = vec![plan.formats.stress, plan.formats.weight, plan.formats.g, plan.formats.u];
@@ -62,11 +62,11 @@ pub fn check_widths(plan: &Plan) {
         for row in &matrix.rows {
             assert!(!row.is_empty(), "{} has an empty row", matrix.name);
             assert!(row.is_sorted_by_key(|&(column, _)| column));
-            let (used, unused) = (0..plan.ways(), plan.ways()..4);
-            assert!(row.iter().all(|(_, ways)| ways.iter().all(|&value| i64::from(value).abs() <= limit)));
-            assert!(row.iter().all(|(_, ways)| ways[unused.clone()].iter().all(|&value| value == 0)));
-            for way in used {
-                let sum: i64 = row.iter().map(|(_, ways)| i64::from(ways[way]).abs()).sum();
+            let (used, unused) = (0..plan.channels(), plan.channels()..4);
+            assert!(row.iter().all(|(_, channels)| channels.iter().all(|&value| i64::from(value).abs() <= limit)));
+            assert!(row.iter().all(|(_, channels)| channels[unused.clone()].iter().all(|&value| value == 0)));
+            for channel in used {
+                let sum: i64 = row.iter().map(|(_, channels)| i64::from(channels[channel]).abs()).sum();
                 assert!(sum <= matrix.row_sum, "{}", matrix.name);
             }
         }

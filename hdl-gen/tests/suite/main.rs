@@ -8,9 +8,8 @@ mod expected;
 mod folded_formats;
 mod formats;
 mod joint;
-mod lanes;
 mod model;
-mod need;
+mod pes;
 mod reduced;
 mod roms;
 mod rooms;
@@ -21,3 +20,4 @@ mod schedule;
 #[path = "../../../golden/tests/suite/stages.rs"]
 mod stages;
 mod support;
+mod target_search;

@@ -13,8 +13,8 @@ use hdl_gen::plan::schedule::Schedule;
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
-use crate::lanes::execute;
 use crate::model::{Contact, answer, any_contact, frame, full_width, line_ratio, prepare_as, reference, top};
+use crate::pes::execute;
 use crate::support::{any_reduced_design, design_text, plan};
 
 /// Largest difference of two plans' forces, of the largest normal force of the frame.
@@ -52,9 +52,9 @@ pub fn symmetric(quads: &Quads, parity: usize, numbers: &[i32]) -> DMatrix<f64> 
 pub fn stored(quads: &Quads, parity: usize, dense: &DMatrix<f64>) -> QuantisedMatrix {
     let folded = FoldedMatrix::new(&(dense * 4.0), parity, quads);
     let entry = |row: usize, column: usize| -> Entry {
-        let ways = folded.blocks.each_ref().map(|block| block[(row, column)]);
-        assert!(ways.iter().all(|value| value.fract() == 0.0));
-        (column as u32, ways.map(|value| value as i32))
+        let channels = folded.blocks.each_ref().map(|block| block[(row, column)]);
+        assert!(channels.iter().all(|value| value.fract() == 0.0));
+        (column as u32, channels.map(|value| value as i32))
     };
     let n = quads.count();
     let rows = (0..n).map(|row| (0..n).map(|column| entry(row, column)).collect()).collect();
@@ -75,12 +75,12 @@ fn through_the_lanes(quads: &Quads, product: &Product, matrix: QuantisedMatrix, 
     let (products, matrices) = (std::slice::from_ref(product), [matrix]);
     let schedule = Schedule::new(products, &matrices, lanes, false);
     let sums = execute(&schedule, products, &matrices, n, &|product, _, quad| {
-        std::array::from_fn(|way| match product.mirrored {
-            None => folded(way, quad),
-            Some(side) => folded(swapped(way), mirror(quad, side)),
+        std::array::from_fn(|channel| match product.mirrored {
+            None => folded(channel, quad),
+            Some(side) => folded(swapped(channel), mirror(quad, side)),
         })
     });
-    unfolded(quads, |quad| product.ways().map(|way| sums[&(0, quad as u32)][way]))
+    unfolded(quads, |quad| product.channels().map(|channel| sums[&(0, quad as u32)][channel]))
 }
 
 /// The values at the taxels, from the classes of each quad.
@@ -107,7 +107,7 @@ pub fn product(parity: usize, mirrored: Option<usize>) -> Product {
             epilogue: Epilogue::Unfold,
             result: Vector::U(0),
         },
-        lead: None,
+        preload: None,
         block: Block::Co,
         program: 0,
         shift: 0,

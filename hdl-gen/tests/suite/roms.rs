@@ -12,12 +12,12 @@ use serde_json::Value;
 
 use crate::support::{any_design, design_text, plan};
 
-/// Bits of a result's destination in a visit; resultants alone have fewer.
+/// Bits of a result's destination in a slot; resultants alone have fewer.
 fn destination_bits(plan: &Plan) -> u32 {
     if plan.field_words() > 0 { 4 } else { 3 }
 }
 
-/// Rows of a column and its coefficients, one a way.
+/// Rows of a column and its coefficients, one a channel.
 type Rows = Vec<Vec<(u32, Vec<i32>)>>;
 
 fn text<'a>(files: &'a FileMap, name: &str) -> &'a str {
@@ -44,10 +44,10 @@ fn words(files: &FileMap, name: &str, bits: u32) -> Vec<u128> {
     words
 }
 
-/// The coefficients in a word, that of way 0 lowest.
-fn ways(word: u128, ways: usize, bits: u32) -> Vec<i32> {
-    let field = |way: usize| (word >> (way as u32 * bits)) as u32 & ((1 << bits) - 1);
-    (0..ways).map(|way| ((field(way) << (32 - bits)) as i32) >> (32 - bits)).collect()
+/// The coefficients in a word, that of channel 0 lowest.
+fn channels(word: u128, channels: usize, bits: u32) -> Vec<i32> {
+    let field = |channel: usize| (word >> (channel as u32 * bits)) as u32 & ((1 << bits) - 1);
+    (0..channels).map(|channel| ((field(channel) << (32 - bits)) as i32) >> (32 - bits)).collect()
 }
 
 fn bits_for(count: usize) -> u32 {
@@ -64,19 +64,19 @@ struct Reader {
     marked: usize,
     segment: usize,
     /// `(product, row)` of each of its results.
-    visits: VecDeque<(usize, usize)>,
+    slots: VecDeque<(usize, usize)>,
 }
 
 impl Reader {
-    /// The ROMs of all lanes.
+    /// The ROMs of all PEs.
     fn all(files: &FileMap, plan: &Plan) -> Vec<Self> {
-        let (name, lanes, elements) = (&plan.design.name, plan.walkers(), plan.elements());
+        let (name, pes, elements) = (&plan.design.name, plan.pes(), plan.elements());
         let coefficient_bits = plan.design.hardware.coefficient_bits;
         let most_vectors = plan.products.iter().map(|product| product.operands.len()).max().unwrap();
         let row_bits = bits_for(elements.max(SUM_ROWS));
-        let lane = |lane: usize| {
-            let file = |kind: &str, bits| words(files, &format!("rom/{name}_{kind}_lane{lane:02}.mem"), bits);
-            let values = file("values", plan.ways() as u32 * coefficient_bits);
+        let pe = |pe: usize| {
+            let file = |kind: &str, bits| words(files, &format!("rom/{name}_{kind}_pe{pe:02}.mem"), bits);
+            let values = file("values", plan.channels() as u32 * coefficient_bits);
             Self {
                 read: vec![false; values.len()],
                 values,
@@ -85,20 +85,20 @@ impl Reader {
                 word: 0,
                 marked: 0,
                 segment: 0,
-                visits: VecDeque::new(),
+                slots: VecDeque::new(),
             }
         };
-        let mut readers: Vec<Self> = (0..lanes).map(lane).collect();
+        let mut readers: Vec<Self> = (0..pes).map(pe).collect();
         let destination_bits = destination_bits(plan);
         let below = destination_bits + row_bits;
-        let visits = words(files, &format!("rom/{name}_visits.mem"), 1 + bits_for(lanes) + below);
+        let slots = words(files, &format!("rom/{name}_slots.mem"), 1 + bits_for(pes) + below);
         let program_ends: Vec<usize> =
-            plan.schedule.programs.iter().skip(1).map(|next| next.visit - 1).chain([visits.len() - 1]).collect();
-        for (index, visit) in visits.into_iter().enumerate() {
-            let field = |from: u32, bits: u32| (visit >> from) as usize & ((1 << bits) - 1);
-            assert_eq!(visit >> (below + bits_for(lanes)) == 1, program_ends.contains(&index), "last of its program");
-            readers[field(below, bits_for(lanes))]
-                .visits
+            plan.schedule.programs.iter().skip(1).map(|next| next.slot - 1).chain([slots.len() - 1]).collect();
+        for (index, slot) in slots.into_iter().enumerate() {
+            let field = |from: u32, bits: u32| (slot >> from) as usize & ((1 << bits) - 1);
+            assert_eq!(slot >> (below + bits_for(pes)) == 1, program_ends.contains(&index), "last of its program");
+            readers[field(below, bits_for(pes))]
+                .slots
                 .push_back((field(row_bits, destination_bits), field(0, row_bits)));
         }
         let depth = |get: fn(&Self) -> usize| readers.iter().all(|reader| get(reader) == get(&readers[0]));
@@ -137,7 +137,7 @@ fn matrices_in_roms(files: &FileMap, plan: &Plan) -> Vec<Rows> {
         }
     }
     for reader in readers {
-        assert!(reader.visits.is_empty());
+        assert!(reader.slots.is_empty());
         let unread = reader.read.iter().zip(reader.values.iter().zip(&reader.columns)).filter(|(read, _)| !**read);
         assert!(unread.into_iter().all(|(_, words)| words == (&0, &0)));
     }
@@ -147,9 +147,9 @@ fn matrices_in_roms(files: &FileMap, plan: &Plan) -> Vec<Rows> {
 fn product_in_roms(readers: &mut [Reader], plan: &Plan, index: usize, cycles: u64) -> Rows {
     let product = &plan.products[index];
     let elements = plan.elements();
-    let mut rows: Rows = vec![Vec::new(); elements + product.lead.map_or(0, |_| SUM_ROWS)];
+    let mut rows: Rows = vec![Vec::new(); elements + product.preload.map_or(0, |_| SUM_ROWS)];
     let mut open_head = None;
-    for (lane, reader) in readers.iter_mut().enumerate() {
+    for (pe, reader) in readers.iter_mut().enumerate() {
         let mut issued = 0;
         while issued < cycles {
             let segment = reader.segments[reader.segment];
@@ -160,10 +160,10 @@ fn product_in_roms(readers: &mut [Reader], plan: &Plan, index: usize, cycles: u6
                 continue;
             }
             let row = if kind == 1 {
-                open_head.take().expect("the lane before has begun this row")
+                open_head.take().expect("the PE before has begun this row")
             } else {
-                let (to, row) = reader.visits.pop_front().expect("a visit for every result");
-                let sums = to == SUMS_DESTINATION && product.lead.is_some();
+                let (to, row) = reader.slots.pop_front().expect("a slot for every result");
+                let sums = to == SUMS_DESTINATION && product.preload.is_some();
                 assert!(sums || to == destination(product.result), "{to} of {}", product.result.name());
                 if sums { elements + row } else { product.mirrored.map_or(row, |side| mirror(row, side)) }
             };
@@ -172,15 +172,16 @@ fn product_in_roms(readers: &mut [Reader], plan: &Plan, index: usize, cycles: u6
             }
             for word in reader.word..reader.word + macs {
                 reader.read[word] = true;
-                let coefficients = ways(reader.values[word], plan.ways(), plan.design.hardware.coefficient_bits);
+                let coefficients =
+                    channels(reader.values[word], plan.channels(), plan.design.hardware.coefficient_bits);
                 rows[row].push((reader.columns[word] as u32, coefficients));
             }
             reader.word += macs;
         }
-        assert_eq!(issued, cycles, "product {index}, lane {lane}");
+        assert_eq!(issued, cycles, "product {index}, PE {pe}");
     }
     assert!(open_head.is_none());
-    // In the ROMs they stand in the order in which the lanes find their operands.
+    // In the ROMs they stand in the order in which the PEs find their operands.
     for row in &mut rows {
         row.sort_by_key(|&(column, _)| column);
     }
@@ -201,7 +202,7 @@ fn listings(files: &FileMap) -> BTreeMap<String, Rows> {
             assert_eq!(row.parse(), Ok(index));
             let pair = |entry: &str| {
                 let (column, value) = entry.split_once(':').unwrap();
-                (column.parse().unwrap(), value.split(',').map(|way| way.parse().unwrap()).collect())
+                (column.parse().unwrap(), value.split(',').map(|channel| channel.parse().unwrap()).collect())
             };
             let entries: Vec<(u32, Vec<i32>)> = entries.split_whitespace().map(pair).collect();
             assert_eq!(macs.parse(), Ok(entries.len()), "{name} row {index}");
@@ -217,12 +218,12 @@ fn check(plan: &Plan) {
     let listings = listings(&files);
     assert_eq!(listings.len(), plan.matrices.len());
     let planned = |matrix: &QuantisedMatrix| -> Rows {
-        let entry = |&(column, ways): &Entry| (column, ways[..plan.ways()].to_vec());
+        let entry = |&(column, channels): &Entry| (column, channels[..plan.channels()].to_vec());
         matrix.rows.iter().map(|row| row.iter().map(entry).collect()).collect()
     };
     for (mut found, product) in matrices_in_roms(&files, plan).into_iter().zip(&plan.products) {
-        let lead = product.lead.map(|lead| (lead.matrix, found.split_off(plan.elements())));
-        for (matrix, found) in lead.into_iter().chain([(product.matrix, found)]) {
+        let preload = product.preload.map(|preload| (preload.matrix, found.split_off(plan.elements())));
+        for (matrix, found) in preload.into_iter().chain([(product.matrix, found)]) {
             let matrix = &plan.matrices[matrix];
             assert_eq!(found, listings[&matrix.name], "{}", matrix.name);
             assert_eq!(found, planned(matrix), "{}", matrix.name);

@@ -44,13 +44,13 @@ fn the_largest_sensor_has_a_plan_with_one_lane() {
 fn the_largest_sensor_has_hardware_with_sixteen_lanes() {
     let lanes = 16;
     let files = emit(&planned(lanes)).unwrap();
-    assert_eq!(lines(&files, "rom/whole_values_lane00.mem"), 14 * ENTRIES / lanes);
-    assert_eq!(lines(&files, "rom/whole_columns_lane00.mem"), 14 * ENTRIES / lanes);
-    assert_eq!(lines(&files, "rom/whole_visits.mem"), 16 * TAXELS);
+    assert_eq!(lines(&files, "rom/whole_values_pe00.mem"), 14 * ENTRIES / lanes);
+    assert_eq!(lines(&files, "rom/whole_columns_pe00.mem"), 14 * ENTRIES / lanes);
+    assert_eq!(lines(&files, "rom/whole_slots.mem"), 16 * TAXELS);
     assert_eq!(lines(&files, "mcsr/13_C33.txt"), 7 + TAXELS);
     // Five digits and a line end for a coefficient, three and one for its column: no more text than needed.
-    assert_eq!(files["rom/whole_values_lane00.mem"].len(), 14 * ENTRIES / lanes * 6);
-    assert_eq!(files["rom/whole_columns_lane00.mem"].len(), 14 * ENTRIES / lanes * 4);
+    assert_eq!(files["rom/whole_values_pe00.mem"].len(), 14 * ENTRIES / lanes * 6);
+    assert_eq!(files["rom/whole_columns_pe00.mem"].len(), 14 * ENTRIES / lanes * 4);
     assert!(files.values().map(Vec::len).sum::<usize>() < 350_000_000);
 }
 
@@ -67,7 +67,7 @@ fn a_mat_of_4096_taxels_has_hardware() {
     let Timeline { search_cycles, interval_cycles, .. } = plan.timeline;
     assert!(search_cycles > 4096 && search_cycles < interval_cycles / 7, "{search_cycles}, {interval_cycles}");
     let files = emit(&plan).unwrap();
-    let words: Vec<usize> = (0..16).map(|lane| lines(&files, &format!("rom/mat_values_lane{lane:02}.mem"))).collect();
+    let words: Vec<usize> = (0..16).map(|lane| lines(&files, &format!("rom/mat_values_pe{lane:02}.mem"))).collect();
     let entries: usize = plan.matrices.iter().map(QuantisedMatrix::nnz).sum();
     assert!(words.iter().all(|&count| count == plan.schedule.word_depth()), "{words:?}");
     // A sixteenth each, but for the last rows of each product. The friction product's codes are shared.

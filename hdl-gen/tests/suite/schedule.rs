@@ -3,12 +3,12 @@
 use golden::parity::CLASSES;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::matrix::{Entry, QuantisedMatrix};
-use hdl_gen::plan::product::{Block, Coefficients, Epilogue, Product, SUM_ROWS, Step, Vector, visit_to_operand};
-use hdl_gen::plan::schedule::{LaneProgram, Schedule, SegmentKind, Visit};
+use hdl_gen::plan::product::{Block, Coefficients, Epilogue, Product, SUM_ROWS, Step, Vector, take_to_operand};
+use hdl_gen::plan::schedule::{PeProgram, Schedule, SegmentKind, WriteBackSlot};
 use hdl_gen::timing::latency::{ISSUE_TO_RESULT, collector_jump};
 use proptest::prelude::*;
 
-use crate::lanes::{RowSums, Sums, execute};
+use crate::pes::{RowSums, Sums, execute};
 use crate::support::{any_design, design_text, plan, small_plan};
 
 mod speed;
@@ -18,11 +18,11 @@ fn paper_products() -> Vec<Product> {
     small_plan("").products
 }
 
-/// Any number, the same for the same vector, element and way.
+/// Any number, the same for the same vector, element and channel.
 fn operand(vector: Vector, element: usize) -> Sums {
     let seed = vector.name().bytes().fold(7, |seed: u64, byte| seed.wrapping_mul(131) + u64::from(byte));
-    std::array::from_fn(|way| {
-        let index = (CLASSES * element + way) as u64;
+    std::array::from_fn(|channel| {
+        let index = (CLASSES * element + channel) as u64;
         (index.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(seed << 30) >> 40) as i64 - (1 << 23)
     })
 }
@@ -32,37 +32,37 @@ fn run(schedule: &Schedule, products: &[Product], matrices: &[QuantisedMatrix], 
 }
 
 /// Checks the schedules of both kinds of collector; returns that of one which does not look ahead.
-fn check(products: &[Product], matrices: &[QuantisedMatrix], lanes: usize) -> Schedule {
-    check_one(products, matrices, lanes, true);
-    check_one(products, matrices, lanes, false)
+fn check(products: &[Product], matrices: &[QuantisedMatrix], pes: usize) -> Schedule {
+    check_one(products, matrices, pes, true);
+    check_one(products, matrices, pes, false)
 }
 
 /// Executes a schedule and compares with matrix times vector; then looks at what the execution cannot see.
-fn check_one(products: &[Product], matrices: &[QuantisedMatrix], lanes: usize, ahead: bool) -> Schedule {
-    let schedule = Schedule::new(products, matrices, lanes, ahead);
+fn check_one(products: &[Product], matrices: &[QuantisedMatrix], pes: usize, ahead: bool) -> Schedule {
+    let schedule = Schedule::new(products, matrices, pes, ahead);
     let size = matrices[products[0].matrix].rows.len();
     let sums = run(&schedule, products, matrices, size);
-    let leads = products.iter().filter(|product| product.lead.is_some()).count();
-    assert_eq!(sums.len(), products.len() * size + leads * SUM_ROWS);
+    let preloads = products.iter().filter(|product| product.preload.is_some()).count();
+    assert_eq!(sums.len(), products.len() * size + preloads * SUM_ROWS);
     for (index, product) in products.iter().enumerate() {
-        let whole = |way: usize| -> Vec<i64> {
+        let whole = |channel: usize| -> Vec<i64> {
             let parts = product.operands.iter().flat_map(|&part| (0..size).map(move |element| operand(part, element)));
-            parts.map(|ways| ways[way]).collect()
+            parts.map(|channels| channels[channel]).collect()
         };
         let operands: Vec<Vec<i64>> = (0..CLASSES).map(whole).collect();
         let expected = |matrix: &QuantisedMatrix, row: usize| -> Sums {
-            std::array::from_fn(|way| matrix.row_product(row, way, &operands[way]))
+            std::array::from_fn(|channel| matrix.row_product(row, channel, &operands[channel]))
         };
         for row in 0..size {
             // A mirrored product leaves its stored row as the result on the other side of the diagonal.
             let result = product.mirrored.map_or(row, |side| row % side * side + row / side);
             let found = sums[&(index as u32, result as u32)];
-            assert_eq!(found, expected(&matrices[product.matrix], row), "product {index}, row {row}, {lanes} lanes");
+            assert_eq!(found, expected(&matrices[product.matrix], row), "product {index}, row {row}, {pes} PEs");
         }
-        for row in 0..product.lead.map_or(0, |_| SUM_ROWS) {
-            let matrix = &matrices[product.lead.unwrap().matrix];
+        for row in 0..product.preload.map_or(0, |_| SUM_ROWS) {
+            let matrix = &matrices[product.preload.unwrap().matrix];
             let found = sums[&(index as u32, (size + row) as u32)];
-            assert_eq!(found, expected(matrix, row), "lead of product {index}, row {row}, {lanes} lanes");
+            assert_eq!(found, expected(matrix, row), "preload of product {index}, row {row}, {pes} PEs");
         }
     }
     check_dealing(&schedule, products, matrices);
@@ -71,39 +71,39 @@ fn check_one(products: &[Product], matrices: &[QuantisedMatrix], lanes: usize, a
     schedule
 }
 
-/// Every coefficient stands in one lane's ROM, once, lane after lane row by row, in equal shares; a program's
-/// matrices begin at the same address in every lane.
+/// Every coefficient stands in one PE's ROM, once, PE after PE row by row, in equal shares; a program's
+/// matrices begin at the same address in every PE.
 fn check_dealing(schedule: &Schedule, products: &[Product], matrices: &[QuantisedMatrix]) {
     let mut stored = vec![false; matrices.len()];
-    let mut begin = vec![0; schedule.lanes.len()];
+    let mut begin = vec![0; schedule.pes.len()];
     for program in &schedule.programs {
-        for (lane, begin) in schedule.lanes.iter().zip(&mut begin) {
-            assert!(lane.words[*begin..program.word].iter().all(|&word| word == Entry::default()));
+        for (pe, begin) in schedule.pes.iter().zip(&mut begin) {
+            assert!(pe.words[*begin..program.word].iter().all(|&word| word == Entry::default()));
             *begin = program.word;
         }
         for product in &products[program.first..program.end] {
             if std::mem::replace(&mut stored[product.matrix], true) {
                 continue;
             }
-            let lead = product.lead.map(|lead| {
-                stored[lead.matrix] = true;
-                &matrices[lead.matrix]
+            let preload = product.preload.map(|preload| {
+                stored[preload.matrix] = true;
+                &matrices[preload.matrix]
             });
             let main = &matrices[product.matrix];
-            let rows: Vec<&Vec<Entry>> = lead.iter().flat_map(|lead| &lead.rows).chain(&main.rows).collect();
+            let rows: Vec<&Vec<Entry>> = preload.iter().flat_map(|preload| &preload.rows).chain(&main.rows).collect();
             let flat: Vec<Entry> = rows.iter().copied().flatten().copied().collect();
             let longest = rows.iter().map(|row| row.len()).max().unwrap();
-            let share = flat.len().div_ceil((flat.len() / longest).clamp(1, schedule.lanes.len()));
+            let share = flat.len().div_ceil((flat.len() / longest).clamp(1, schedule.pes.len()));
             let mut left = flat.len();
-            let mut dealt = Vec::new();
-            for (lane, begin) in schedule.lanes.iter().zip(&mut begin) {
+            let mut stored_words = Vec::new();
+            for (pe, begin) in schedule.pes.iter().zip(&mut begin) {
                 let mine = share.min(left);
-                dealt.extend_from_slice(&lane.words[*begin..*begin + mine]);
+                stored_words.extend_from_slice(&pe.words[*begin..*begin + mine]);
                 *begin += mine;
                 left -= mine;
             }
             // Of a row in the order in which the operands are there.
-            let mut words = &mut dealt[..];
+            let mut words = &mut stored_words[..];
             for row in rows {
                 let (mine, others) = words.split_at_mut(row.len());
                 mine.sort_by_key(|&(column, _)| column);
@@ -114,19 +114,19 @@ fn check_dealing(schedule: &Schedule, products: &[Product], matrices: &[Quantise
         }
     }
     assert!(stored.into_iter().all(|stored| stored));
-    assert!(schedule.lanes.iter().zip(begin).all(|(lane, end)| lane.words.len() == end), "no word besides");
+    assert!(schedule.pes.iter().zip(begin).all(|(pe, end)| pe.words.len() == end), "no word besides");
 }
 
-/// The visits of a program, in order.
-fn visits_of(schedule: &Schedule, program: usize) -> &[Visit] {
-    let end = schedule.programs.get(program + 1).map_or(schedule.visits.len(), |next| next.visit);
-    &schedule.visits[schedule.programs[program].visit..end]
+/// The slots of a program, in order.
+fn slots_of(schedule: &Schedule, program: usize) -> &[WriteBackSlot] {
+    let end = schedule.programs.get(program + 1).map_or(schedule.slots.len(), |next| next.slot);
+    &schedule.slots[schedule.programs[program].slot..end]
 }
 
 fn check_order(schedule: &Schedule, products: &[Product]) {
-    let visits = |of: Vector| {
-        let found = schedule.visits.iter().filter(move |visit| products[visit.product as usize].result == of);
-        found.map(|visit| (visit.row, visit.cycle))
+    let slots = |of: Vector| {
+        let found = schedule.slots.iter().filter(move |slot| products[slot.product as usize].result == of);
+        found.map(|slot| (slot.row, slot.cycle))
     };
     for program in &schedule.programs {
         let mut next = 0;
@@ -134,8 +134,8 @@ fn check_order(schedule: &Schedule, products: &[Product]) {
             assert!(window.start >= next && window.length > 0, "products follow each other");
             next = window.start + window.length;
             if let Epilogue::Add(partial) = product.epilogue {
-                let there: std::collections::BTreeMap<u32, u64> = visits(partial).collect();
-                for (row, cycle) in visits(product.result) {
+                let there: std::collections::BTreeMap<u32, u64> = slots(partial).collect();
+                for (row, cycle) in slots(product.result) {
                     assert!(there[&row] + ISSUE_TO_RESULT <= cycle, "the addend is there before the sum");
                 }
             }
@@ -143,7 +143,7 @@ fn check_order(schedule: &Schedule, products: &[Product]) {
         assert_eq!(program.length, next);
     }
     for (index, program) in schedule.programs.iter().enumerate() {
-        assert_eq!(visits_of(schedule, index).last().map(|visit| visit.cycle), Some(program.last_visit));
+        assert_eq!(slots_of(schedule, index).last().map(|slot| slot.cycle), Some(program.last_slot));
     }
 }
 
@@ -155,15 +155,15 @@ fn check_programs(schedule: &Schedule, products: &[Product]) {
         assert_eq!(program.first, first);
         assert!(products[first..program.end].iter().all(|product| product.program == index));
         first = program.end;
-        let visits = visits_of(schedule, index);
-        assert_eq!((program.first_visit, program.last_visit), (visits[0].cycle, visits.last().unwrap().cycle));
-        // What is started later in time has later visits, product by product: the last one marks the end.
-        assert!(visits.is_sorted_by_key(|visit| (visit.product, visit.cycle)));
+        let slots = slots_of(schedule, index);
+        assert_eq!((program.first_slot, program.last_slot), (slots[0].cycle, slots.last().unwrap().cycle));
+        // What is started later in time has later slots, product by product: the last one marks the end.
+        assert!(slots.is_sorted_by_key(|slot| (slot.product, slot.cycle)));
         for next in &schedule.programs {
             let begins = program.length + next.gap;
-            assert!(program.last_visit + collector_jump(schedule.ahead) <= begins + next.first_visit, "{index}");
+            assert!(program.last_slot + collector_jump(schedule.ahead) <= begins + next.first_slot, "{index}");
             // The collector remembers one start: it has gone on to the next program before the one after that starts.
-            assert!(program.last_visit < begins + next.length, "{index}");
+            assert!(program.last_slot < begins + next.length, "{index}");
         }
     }
     assert_eq!(first, products.len());
@@ -174,17 +174,17 @@ fn matrix(size: usize, rows: Vec<Vec<Entry>>) -> QuantisedMatrix {
     QuantisedMatrix::from_rows("M", rows, 0)
 }
 
-/// Coefficients of all four ways.
-fn any_ways() -> impl Strategy<Value = [i32; CLASSES]> {
+/// Coefficients of all four channels.
+fn any_channels() -> impl Strategy<Value = [i32; CLASSES]> {
     proptest::array::uniform4(-131_072_i32..131_072)
 }
 
 /// Rows of at least one entry: one entry only, a few, or all.
 fn any_row(size: usize) -> impl Strategy<Value = Vec<Entry>> {
-    let one = (0..size as u32, any_ways()).prop_map(|entry| vec![entry]);
-    let some = proptest::collection::btree_map(0..size as u32, any_ways(), 1..=size)
+    let one = (0..size as u32, any_channels()).prop_map(|entry| vec![entry]);
+    let some = proptest::collection::btree_map(0..size as u32, any_channels(), 1..=size)
         .prop_map(|entries| entries.into_iter().collect());
-    let all = proptest::collection::vec(any_ways(), size).prop_map(|values| (0..).zip(values).collect());
+    let all = proptest::collection::vec(any_channels(), size).prop_map(|values| (0..).zip(values).collect());
     prop_oneof![one, some, all]
 }
 
@@ -192,7 +192,7 @@ fn any_matrix(size: usize) -> impl Strategy<Value = QuantisedMatrix> {
     proptest::collection::vec(any_row(size), size).prop_map(move |rows| matrix(size, rows))
 }
 
-/// The fourteen stored matrices, and a lane count.
+/// The fourteen stored matrices, and a PE count.
 fn any_matrices() -> impl Strategy<Value = (Vec<QuantisedMatrix>, usize)> {
     (2_usize..24).prop_flat_map(|size| (proptest::collection::vec(any_matrix(size), 14), 1_usize..=64))
 }
@@ -208,16 +208,17 @@ fn any_folded_matrices() -> impl Strategy<Value = (Vec<Product>, Vec<QuantisedMa
         let size = side * side;
         assert_eq!(plan.products.iter().any(|product| product.mirrored.is_some()), mirrored);
         let fixed = |index: usize| {
-            let is_lead = plan.products.iter().any(|product| product.lead.is_some_and(|lead| lead.matrix == index));
+            let is_preload =
+                plan.products.iter().any(|product| product.preload.is_some_and(|preload| preload.matrix == index));
             let is_friction = |product: &Product| product.coefficients == Coefficients::Friction;
-            is_lead || plan.products.iter().any(|product| product.matrix == index && is_friction(product))
+            is_preload || plan.products.iter().any(|product| product.matrix == index && is_friction(product))
         };
         let fixed: Vec<bool> = (0..plan.matrices.len()).map(fixed).collect();
         let drawn = proptest::collection::vec(any_matrix(size), plan.matrices.len());
-        (drawn, 1_usize..=16).prop_map(move |(drawn, lanes)| {
+        (drawn, 1_usize..=16).prop_map(move |(drawn, pes)| {
             let pairs = plan.matrices.iter().zip(drawn).zip(&fixed);
             let matrices = pairs.map(|((own, drawn), &fixed)| if fixed { own.clone() } else { drawn }).collect();
-            (plan.products.clone(), matrices, lanes)
+            (plan.products.clone(), matrices, pes)
         })
     })
 }
@@ -231,10 +232,10 @@ fn check_stress_bank(plan: &Plan) {
         .filter(|(product, _)| product.operands.contains(&Vector::Stress))
         .collect();
     let (_, last) = reads.last().unwrap();
-    for visit in &plan.schedule.visits {
-        let result = plan.products[visit.product as usize].result;
+    for slot in &plan.schedule.slots {
+        let result = plan.products[slot.product as usize].result;
         if plan.operands.place(result) == plan.operands.place(Vector::Stress) {
-            assert!(visit.cycle >= last.start + last.length);
+            assert!(slot.cycle >= last.start + last.length);
             assert_eq!(plan.schedule.programs.len(), 1, "no other frame's stress is there");
         }
     }
@@ -244,20 +245,20 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn programs_compute_the_products((matrices, lanes) in any_matrices()) {
-        check(&paper_products(), &matrices, lanes);
+    fn programs_compute_the_products((matrices, pes) in any_matrices()) {
+        check(&paper_products(), &matrices, pes);
     }
 
     #[test]
-    fn programs_compute_the_products_of_the_reduced_plan((products, matrices, lanes) in any_folded_matrices()) {
-        check(&products, &matrices, lanes);
+    fn programs_compute_the_products_of_the_reduced_plan((products, matrices, pes) in any_folded_matrices()) {
+        check(&products, &matrices, pes);
     }
 
     #[test]
     fn designs_are_scheduled_soundly(text in any_design()) {
         let plan = plan(&text);
-        prop_assert_eq!(plan.walkers() * plan.ways(), plan.design.hardware.lanes);
-        let schedule = check(&plan.products, &plan.matrices, plan.walkers());
+        prop_assert_eq!(plan.pes() * plan.channels(), plan.design.hardware.lanes);
+        let schedule = check(&plan.products, &plan.matrices, plan.pes());
         prop_assert_eq!(schedule, plan.schedule.clone());
         check_stress_bank(&plan);
     }
@@ -265,16 +266,16 @@ proptest! {
 
 #[test]
 fn rows_of_one_entry_keep_two_places_enough() {
-    // A result a cycle from every lane: the collector is the bottleneck, and lanes must wait for it.
+    // A result a cycle from every PE: the collector is the bottleneck, and PEs must wait for it.
     let diagonal = |size: usize| matrix(size, (0..size as u32).map(|row| vec![(row, [3, 5, 7, 9])]).collect());
-    for (size, lanes) in [(2, 1), (2, 64), (30, 8), (64, 64), (65, 64), (128, 3)] {
+    for (size, pes) in [(2, 1), (2, 64), (30, 8), (64, 64), (65, 64), (128, 3)] {
         let matrices = vec![diagonal(size); 14];
-        let schedule = check(&paper_products(), &matrices, lanes);
-        let idle = |lane: &hdl_gen::plan::schedule::LaneProgram| {
-            lane.segments.iter().any(|segment| segment.kind == SegmentKind::Idle)
+        let schedule = check(&paper_products(), &matrices, pes);
+        let idle = |pe: &hdl_gen::plan::schedule::PeProgram| {
+            pe.segments.iter().any(|segment| segment.kind == SegmentKind::Idle)
         };
-        assert_eq!(schedule.lanes.iter().any(idle), lanes > 1, "{size} rows, {lanes} lanes");
-        assert!(schedule.visits.len() as u64 <= schedule.programs[0].last_visit + 1, "one visit a cycle");
+        assert_eq!(schedule.pes.iter().any(idle), pes > 1, "{size} rows, {pes} PEs");
+        assert!(schedule.slots.len() as u64 <= schedule.programs[0].last_slot + 1, "one slot a cycle");
     }
 }
 
@@ -294,7 +295,7 @@ fn a_product_starts_as_soon_as_its_macs_find_their_operands() {
             epilogue,
             result,
         },
-        lead: None,
+        preload: None,
         block,
         program: 0,
         shift: 0,
@@ -307,25 +308,25 @@ fn a_product_starts_as_soon_as_its_macs_find_their_operands() {
         ]
     };
     let kinds = [
-        (Epilogue::Keep, Epilogue::Keep, [visit_to_operand(Epilogue::Keep); 2]),
-        (Epilogue::Part, Epilogue::Store, [visit_to_operand(Epilogue::Part), visit_to_operand(Epilogue::Store)]),
+        (Epilogue::Keep, Epilogue::Keep, [take_to_operand(Epilogue::Keep); 2]),
+        (Epilogue::Part, Epilogue::Store, [take_to_operand(Epilogue::Part), take_to_operand(Epilogue::Store)]),
     ];
     for (first, second, delays) in kinds {
-        for (size, lanes) in (2..20).flat_map(|size| (1..10).map(move |lanes| (size, lanes))) {
-            let schedule = check(&chain(first, second), &vec![reversal(size); 3], lanes);
+        for (size, pes) in (2..20).flat_map(|size| (1..10).map(move |pes| (size, pes))) {
+            let schedule = check(&chain(first, second), &vec![reversal(size); 3], pes);
             for (index, window) in schedule.windows.iter().enumerate().skip(1) {
                 let there = |column: u32| {
-                    let of_operand = |visit: &&Visit| (visit.product as usize, visit.row) == (index - 1, column);
-                    schedule.visits.iter().find(of_operand).unwrap().cycle + delays[index - 1]
+                    let of_operand = |slot: &&WriteBackSlot| (slot.product as usize, slot.row) == (index - 1, column);
+                    schedule.slots.iter().find(of_operand).unwrap().cycle + delays[index - 1]
                 };
-                // A row has one entry, and a lane rows in a row: word k of a lane is issued k cycles after the first.
-                let share = size.div_ceil(lanes.min(size));
-                let of_lane = |(number, lane): (usize, &LaneProgram)| {
+                // A row has one entry, and a PE rows in a row: word k of a PE is issued k cycles after the first.
+                let share = size.div_ceil(pes.min(size));
+                let of_pe = |(number, pe): (usize, &PeProgram)| {
                     let mine = share.min(size.saturating_sub(number * share));
-                    let words = &lane.words[index * mine..(index + 1) * mine];
+                    let words = &pe.words[index * mine..(index + 1) * mine];
                     (0..).zip(words).map(|(issue, &(column, _))| there(column).saturating_sub(issue)).max()
                 };
-                let soonest = schedule.lanes.iter().enumerate().filter_map(of_lane).max().unwrap();
+                let soonest = schedule.pes.iter().enumerate().filter_map(of_pe).max().unwrap();
                 let before = schedule.windows[index - 1];
                 assert_eq!(window.start, soonest.max(before.start + before.length), "no sooner and no later");
             }

@@ -101,7 +101,7 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
     let stream = (hardware.stream_bits / 8) | (u32::from(registers::samples(plan)) << 8);
     let features = [
         plan.field_words() > 0,
-        plan.ways() > 1,
+        plan.channels() > 1,
         plan.design.input.counts(),
         false,
         plan.calibration.is_some(),

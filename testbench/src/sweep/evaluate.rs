@@ -89,7 +89,7 @@ pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Poin
         dsp: plan.resources.dsp,
         bram36: plan.resources.bram36,
         rom_bits: plan.resources.rom_bits,
-        macs: plan.schedule.windows.iter().map(|window| window.macs * plan.ways() as u64).sum(),
+        macs: plan.schedule.windows.iter().map(|window| window.macs * plan.channels() as u64).sum(),
     });
     Ok(point)
 }

@@ -190,14 +190,14 @@ fn what_an_interrupted_build_left_is_removed_and_a_running_one_is_not() {
 /// A module of the library holds more than a design uses of it.
 #[test]
 fn what_generate_leaves_out_is_no_hardware() {
-    let library = "module sptfra_part #(parameter WAYS = 4) (input wire clock, input wire x, output reg y);
+    let library = "module sptfra_part #(parameter CHANNELS = 4) (input wire clock, input wire x, output reg y);
         generate
-            if (WAYS == 4) begin : gen_four
+            if (CHANNELS == 4) begin : gen_four
                 always @(posedge clock) y <= x;
             end else begin : gen_one
                 always @(posedge clock) y <= !x;
             end
-            if (WAYS > 4) begin : gen_check
+            if (CHANNELS > 4) begin : gen_check
                 sptfra_error_ways invalid ();
             end
         endgenerate
@@ -206,7 +206,7 @@ fn what_generate_leaves_out_is_no_hardware() {
         `endif
         endmodule\n";
     let top = "module t #(parameter ROM_DIR = \"\") (input wire clock, input wire x, output wire y);
-        sptfra_part #(.WAYS (1)) part (.clock(clock), .x(x), .y(y));
+        sptfra_part #(.CHANNELS (1)) part (.clock(clock), .x(x), .y(y));
         endmodule\n";
     let of = |library: &str| {
         let file = |name: &str, text: &str| (name.to_owned(), text.as_bytes().to_vec());
@@ -216,6 +216,6 @@ fn what_generate_leaves_out_is_no_hardware() {
     let changed = |from: &str, to: &str| of(&library.replace(from, to)) != of(library);
     assert!(changed("y <= !x", "y <= x"));
     assert!(!changed("y <= x", "y <= !y"));
-    assert!(!changed("WAYS > 4", "WAYS > 5"));
+    assert!(!changed("CHANNELS > 4", "CHANNELS > 5"));
     assert!(!changed("seen = x", "seen = !x"));
 }

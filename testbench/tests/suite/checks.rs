@@ -41,10 +41,16 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
     let late_settled = late("settled", "(state == MEASURE)");
     let cases = [
         // The collector does not keep up with the lanes.
-        (paper(), "sptfra_spmv_collector", "visit_known && !parted", "visit_known && parted", "spmv_lane.v"),
-        (reduced(), "sptfra_spmv_collector", "visit_known && !parted", "visit_known && parted", "spmv_lane.v"),
+        (paper(), "sptfra_spmv_collector", "slot_known && !parted", "slot_known && parted", "spmv_pe.v"),
+        (reduced(), "sptfra_spmv_collector", "slot_known && !parted", "slot_known && parted", "spmv_pe.v"),
         // A program begins before the one before has put out its results.
-        (reduced(), "sptfra_turns", "wire free = !busy || issued;", "wire free = 1'b1;", "spmv_collector.v"),
+        (
+            reduced(),
+            "sptfra_program_scheduler",
+            "wire free = !busy || issued;",
+            "wire free = 1'b1;",
+            "spmv_collector.v",
+        ),
         // The line does not take the sums.
         (reduced(), "sptfra_line", "sums_take <= (state == SUMS) && sums_complete;", "sums_take <= 1'b0;", "_co.v"),
         (paper(), "sptfra_line", "sums_take <= (state == SUMS) && sums_complete;", "sums_take <= 1'b0;", "_co.v"),
@@ -52,8 +58,20 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
         (reduced(), "sptfra_summary", "(step == 6'd27) begin", "(step == 6'd28) begin", "sptfra_check_latency.v"),
         (reduced(), "sptfra_search", "wait_count == 2'd3", "wait_count == 2'd2", "sptfra_check_latency.v"),
         // A block takes longer than the plan says.
-        (reduced(), "sptfra_unfold", "STAGES = (WAYS == 4) ? 5 : 1;", "STAGES = (WAYS == 4) ? 6 : 2;", "check_delay.v"),
-        (paper(), "sptfra_unfold", "STAGES = (WAYS == 4) ? 5 : 1;", "STAGES = (WAYS == 4) ? 6 : 2;", "check_delay.v"),
+        (
+            reduced(),
+            "sptfra_unfold",
+            "STAGES = (CHANNELS == 4) ? 5 : 1;",
+            "STAGES = (CHANNELS == 4) ? 6 : 2;",
+            "check_delay.v",
+        ),
+        (
+            paper(),
+            "sptfra_unfold",
+            "STAGES = (CHANNELS == 4) ? 5 : 1;",
+            "STAGES = (CHANNELS == 4) ? 6 : 2;",
+            "check_delay.v",
+        ),
         (
             reduced(),
             "sptfra_we",
@@ -64,7 +82,7 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
         (paper(), "sptfra_we", "write_valid <= taxel_y;", "write_valid <= taxel_y && !write_valid;", "check_delay.v"),
         (reduced(), "sptfra_co", "(sums_count == 3'd6);", "(sums_count == 3'd5);", "check_delay.v"),
         (paper(), "sptfra_coefficients", "is_g_3 <= is_g_2;", "is_g_3 <= is_g_1;", "check_delay.v"),
-        (reduced(), "sptfra_spmv_collector", "sum_valid <= visited_valid;", "sum_valid <= taking;", "check_delay.v"),
+        (reduced(), "sptfra_spmv_collector", "sum_valid <= taken_valid;", "sum_valid <= taking;", "check_delay.v"),
         (reduced(), "sptfra_line", "(step == 4'd14)", "(step == 4'd15)", "check_latency.v"),
         (joint(), "sptfra_cean", "settled <= (state == MEASURE);", &late_settled, "check_latency.v"),
         (joint(), "sptfra_grid_values", "row_valid <= giving;", "row_valid <= lasts[STAGES];", "check_latency.v"),
@@ -73,12 +91,12 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
         (
             reduced(),
             "sptfra_fold",
-            "lasts[TURN_TO_WRITTEN] && advance",
-            "lasts[TURN_TO_WRITTEN-1] && advance",
+            "lasts[READ_TO_WRITTEN] && advance",
+            "lasts[READ_TO_WRITTEN-1] && advance",
             "check_latency.v",
         ),
         // More frames are begun than Op has places for.
-        (resultants(), "sptfra_turns", "(u_held != 2'd2) && ", "", "_co.v"),
+        (resultants(), "sptfra_program_scheduler", "(u_held != 2'd2) && ", "", "_co.v"),
     ];
     let cases = some_faults(cases, |(_, module, from, ..)| (module, from));
     let said = in_parallel(&cases, |(design, module, from, to, _)| said_of(design, module, from, to));

@@ -50,7 +50,7 @@ fn shared(design: &Design, marked: bool) -> BTreeSet<String> {
     // Yosys' own names say nothing of who looks at them.
     let wires = module["netnames"].as_object().expect("wires").iter();
     for (name, wire) in wires.filter(|(name, _)| !name.starts_with('$')) {
-        let copy = ["gen_lanes[", "gen_cells[", "gen_points["].iter().find_map(|array| name.find(array));
+        let copy = ["gen_pes[", "gen_cells[", "gen_points["].iter().find_map(|array| name.find(array));
         let Some((number, register)) = copy.and_then(|at| Some(name.split_at(at + name[at..].find("].")? + 2))) else {
             outside.extend(bits(&wire["bits"]));
             continue;
@@ -85,7 +85,7 @@ fn each_lane_and_cell_has_its_own() {
     let mut line = by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field);
     line.hardware.lanes = 8;
     let joint = with_joint(line.clone());
-    let of_lanes = ["lane.base_2"];
+    let of_lanes = ["pe.base_2"];
     let of_cells = ["hinges.element_1", "hinges.element_2", "hinges.element_3"];
     // A flag of a leaf core, and what becomes a register of the multiplier.
     let of_none = ["lane.row_sequencer.primes"];

@@ -31,10 +31,10 @@ fn show(table: &str) {
 /// Share of its lane cycles in which each sparse product multiplies. The combination of the residual's parts, three
 /// entries a row, is none of a matrix.
 fn least_busy_product(plan: &Plan) -> f64 {
-    let lanes = plan.walkers() as u64;
+    let pes = plan.pes() as u64;
     let of_matrix = |product: &Product| product.coefficients == Coefficients::Rom;
     let windows = plan.products.iter().zip(&plan.schedule.windows).filter(|(product, _)| of_matrix(product));
-    windows.map(|(_, window)| window.macs as f64 / (window.length * lanes) as f64).fold(1.0, f64::min)
+    windows.map(|(_, window)| window.macs as f64 / (window.length * pes) as f64).fold(1.0, f64::min)
 }
 
 /// What a reduced design must keep to.

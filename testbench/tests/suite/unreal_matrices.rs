@@ -30,8 +30,8 @@ fn weaken(plan: &mut Plan, divisor: i32, condition: impl Fn(Vector) -> bool) {
     let products = plan.products.iter().filter(|product| condition(product.result));
     let matrices: BTreeSet<usize> = products.map(|product| product.matrix).collect();
     for matrix in matrices {
-        for (_, ways) in plan.matrices[matrix].rows.iter_mut().flatten() {
-            *ways = ways.map(|coefficient| coefficient / divisor);
+        for (_, channels) in plan.matrices[matrix].rows.iter_mut().flatten() {
+            *channels = channels.map(|coefficient| coefficient / divisor);
         }
     }
 }

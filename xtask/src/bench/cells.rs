@@ -10,7 +10,7 @@ use super::{BenchError, read_json};
 use golden::table::Table;
 use testbench::figures::{decimals, grouped};
 
-/// Name of what is in no predicted block: stream buffers, turns, registers between the blocks.
+/// Name of what is in no predicted block: stream buffers, program scheduler, registers between the blocks.
 const REST: &str = "rest";
 
 /// Cells of a block or of a design.

@@ -138,11 +138,11 @@ impl Slot for JointPlan {
         "sptfra_estimator_joint"
     }
 
-    fn parameters(&self, design: &Design, ways: usize) -> Parameters {
+    fn parameters(&self, design: &Design, channels: usize) -> Parameters {
         let parameters = Parameters::new()
             .count("COLUMNS", design.sensor.columns)
             .count("ROWS", design.sensor.rows)
-            .count("WAYS", ways)
+            .count("CHANNELS", channels)
             .number("DATA_BITS", Factors::of(design).outside_bits().into())
             .count("SIDE", self.search.side)
             .count("PARALLEL", self.search.parallel)

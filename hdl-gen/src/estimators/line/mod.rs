@@ -52,14 +52,14 @@ pub struct LinePlan {
 impl LinePlan {
     /// As many cells as lanes, at most [`MOST_CELLS`], with a power of two of taxels each.
     pub fn new(given: &Given) -> Self {
-        let groups = (given.design.hardware.lanes.min(MOST_CELLS) / given.ways).max(1);
+        let groups = (given.design.hardware.lanes.min(MOST_CELLS) / given.channels).max(1);
         let per_cell = given.elements.div_ceil(groups).next_power_of_two();
         let hinge_lsb = given.u.lsb - FRICTION_FRACTION as i32 + HINGE_DROP as i32;
         let pitch_mm = given.design.sensor.pitch_mm;
         let larger = pitch_mm[0].max(pitch_mm[1]);
         let one = f64::from(1_u32 << PITCH_FRACTION);
         Self {
-            cells: Cells::new(given.elements, given.ways, per_cell),
+            cells: Cells::new(given.elements, given.channels, per_cell),
             points: if given.design.hardware.lanes > ONE_POINT_LANES && per_cell <= THREE_POINTS_ELEMENTS {
                 3
             } else {
@@ -100,11 +100,11 @@ impl Slot for LinePlan {
         "sptfra_estimator_line"
     }
 
-    fn parameters(&self, design: &Design, ways: usize) -> Parameters {
+    fn parameters(&self, design: &Design, channels: usize) -> Parameters {
         Parameters::new()
             .count("COLUMNS", design.sensor.columns)
             .count("ROWS", design.sensor.rows)
-            .count("WAYS", ways)
+            .count("CHANNELS", channels)
             .number("DATA_BITS", Factors::of(design).outside_bits().into())
             .count("CELLS", self.cells.cells)
             .count("CELL_ELEMENTS", self.cells.elements)

@@ -64,10 +64,12 @@ fn unfolded(plan: &Plan, product: &Product) -> Vec<Vec<f64>> {
     for (quad, row) in matrix.rows.iter().enumerate() {
         for (s, result) in quads.members(quad).into_iter().enumerate() {
             let mut line = vec![0.0; plan.taxels()];
-            for &(column, ways) in row.iter().filter(|(column, _)| (*column as usize) < quads.count()) {
+            for &(column, channels) in row.iter().filter(|(column, _)| (*column as usize) < quads.count()) {
                 for (t, taxel) in quads.members(column as usize).into_iter().enumerate() {
-                    let of_way = |way: usize| sign(way ^ product.parity, s) * sign(way, t) * f64::from(ways[way]);
-                    line[taxel] += (0..CLASSES).map(of_way).sum::<f64>();
+                    let of_channel = |channel: usize| {
+                        sign(channel ^ product.parity, s) * sign(channel, t) * f64::from(channels[channel])
+                    };
+                    line[taxel] += (0..CLASSES).map(of_channel).sum::<f64>();
                 }
             }
             dense[result] = line;

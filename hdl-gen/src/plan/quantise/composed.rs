@@ -21,7 +21,7 @@ const SLACK: f64 = 1.0 + 1e-9;
 
 /// The vectors between weights and forces.
 #[derive(Clone, Copy)]
-pub(super) struct Way {
+pub(super) struct Path {
     pub weights: Operand,
     pub residual: Format,
     pub explained: Format,
@@ -39,20 +39,20 @@ pub(super) struct Worst {
 }
 
 /// The worst case of `A_p (C33 y+ + mu_x C31 |w| + mu_y C32 |w|)`, all p, for matrices as stored.
-pub(super) fn worst(c: &[QuantisedMatrix], a: &[QuantisedMatrix], way: Way) -> Worst {
+pub(super) fn worst(c: &[QuantisedMatrix], a: &[QuantisedMatrix], path: Path) -> Worst {
     let count = c.first().map_or(0, |matrix| matrix.rows.len());
     let steep = LARGEST_FRICTION as f64;
     let friction = [1.0, steep, steep];
     // What the lanes drop of the products: of the parts of r, and of r, of three of them.
-    let of_parts: f64 = c.iter().zip(friction).map(|(matrix, by)| by * dropped(matrix, way.weights.folded)).sum();
-    let in_parts = if of_parts > 0.0 { of_parts + way.residual.step() } else { 0.0 };
+    let of_parts: f64 = c.iter().zip(friction).map(|(matrix, by)| by * dropped(matrix, path.weights.folded)).sum();
+    let in_parts = if of_parts > 0.0 { of_parts + path.residual.step() } else { 0.0 };
     let c: Vec<[DMatrix<f64>; CLASSES]> = c.iter().map(|matrix| blocks(matrix, count)).collect();
     // |w| and y+ are rounded as they are folded, the parts of r as they are stored, and r again.
     let folding: f64 = c.iter().zip(friction).map(|(blocks, by)| by * row_sum(blocks)).sum();
     let rounding = 0.5
-        * (folding * way.weights.folded.step()
-            + friction.iter().sum::<f64>() * way.residual.step()
-            + way.explained.step())
+        * (folding * path.weights.folded.step()
+            + friction.iter().sum::<f64>() * path.residual.step()
+            + path.explained.step())
         + in_parts;
     let of_component = |stored: &QuantisedMatrix| {
         let a = blocks(stored, count);
@@ -60,10 +60,10 @@ pub(super) fn worst(c: &[QuantisedMatrix], a: &[QuantisedMatrix], way: Way) -> W
         for ((parity, c), by) in c.iter().enumerate().zip(friction) {
             let product: [DMatrix<f64>; CLASSES] = std::array::from_fn(|class| &a[class ^ parity] * &c[class]);
             let [folded, unfolded] = sums(&product);
-            exact[0] += by * way.weights.folded.bound as f64 * way.weights.folded.step() * folded;
-            exact[1] += by * way.weights.taxel.bound as f64 * way.weights.taxel.step() * unfolded;
+            exact[0] += by * path.weights.folded.bound as f64 * path.weights.folded.step() * folded;
+            exact[1] += by * path.weights.taxel.bound as f64 * path.weights.taxel.step() * unfolded;
         }
-        let rounded = row_sum(&a) * rounding + dropped(stored, way.explained);
+        let rounded = row_sum(&a) * rounding + dropped(stored, path.explained);
         Worst {
             folded: exact[0].max() + rounded,
             unfolded: exact[1].max() + CLASSES as f64 * rounded,
@@ -105,8 +105,8 @@ fn blocks(matrix: &QuantisedMatrix, count: usize) -> [DMatrix<f64>; CLASSES] {
     std::array::from_fn(|class| {
         let mut block = DMatrix::zeros(count, count);
         for (row, entries) in matrix.rows.iter().enumerate() {
-            for &(column, ways) in entries {
-                block[(row, column as usize)] = f64::from(ways[class]) * step;
+            for &(column, channels) in entries {
+                block[(row, column as usize)] = f64::from(channels[class]) * step;
             }
         }
         block

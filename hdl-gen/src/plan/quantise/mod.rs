@@ -257,7 +257,7 @@ impl<'a> Pass<'a> {
         if composed::is_coarse(force, taxel_n) {
             let inverse = self.of_results(|result| matches!(result, Vector::Force(_)));
             let lsb = inverse.iter().map(|matrix| matrix.accumulator_lsb(explained)).max().unwrap_or(force.lsb);
-            let worst = composed::worst(&parts, &inverse, composed::Way { weights, residual, explained });
+            let worst = composed::worst(&parts, &inverse, composed::Path { weights, residual, explained });
             (force, rounding_n) = (composed::format(worst, lsb, self.factors.data_bits), worst.rounding);
         }
         Ok(Field { residual, explained, force, rounding_n })

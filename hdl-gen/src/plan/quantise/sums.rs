@@ -7,7 +7,7 @@ use golden::reduced::ReducedMatrices;
 use super::super::PlanError;
 use super::super::format::{Factors, Format, largest, pow2};
 use super::super::matrix::{ANY_LSB, QuantisedMatrix, RealRows};
-use super::super::product::{SHARE_ROW, SUM_ROWS, sum_row, sum_way};
+use super::super::product::{SHARE_ROW, SUM_ROWS, sum_channel, sum_row};
 use super::bounds::{self, Operand};
 
 /// The rows of all sums of `y+` and the weights, and their format. Torques are in units of `2^arm_exponent` N m.
@@ -27,16 +27,16 @@ pub(super) fn quantise(
             (0..count).map(|quad| ((first_column + quad) as u32, [0.0; CLASSES])).collect()
         })
         .collect();
-    let mut put = |row: usize, way: usize, weights: &[f64], unit: f64| {
-        for ((_, ways), weight) in rows[row].iter_mut().zip(weights) {
-            ways[way] = unit * weight;
+    let mut put = |row: usize, channel: usize, weights: &[f64], unit: f64| {
+        for ((_, channels), weight) in rows[row].iter_mut().zip(weights) {
+            channels[channel] = unit * weight;
         }
     };
     for (p, q) in (0..RESULTANTS).flat_map(|p| (0..3).map(move |q| (p, q))) {
-        put(sum_row(p, q), sum_way(p, q), &ten.sums(p, q).weights, unit(p));
+        put(sum_row(p, q), sum_channel(p, q), &ten.sums(p, q).weights, unit(p));
     }
     for (p, share) in (2..).zip(shares) {
-        put(SHARE_ROW, sum_way(p, 0), &share.weights, unit(p));
+        put(SHARE_ROW, sum_channel(p, 0), &share.weights, unit(p));
     }
     let matrix = QuantisedMatrix::new("sums", &rows, factors, weights.folded.bound, ANY_LSB)?;
     let term = [(&matrix, weights)];

@@ -24,22 +24,20 @@ fn dense_matrices_keep_all_lanes_busy() {
 /// A quarter of the taxels, a quarter of the lanes, rows a quarter as long; what is left to wait for is the parted
 /// result, two cycles each.
 #[test]
-fn dense_blocks_keep_all_walkers_busy() {
-    for walkers in [1, 2, 4, 16] {
+fn dense_blocks_keep_all_pes_busy() {
+    for pes in [1, 2, 4, 16] {
         for outputs in ["field", "resultants"] {
-            let more = format!(
-                "[algorithm]\nplan = \"reduced\"\noutputs = \"{outputs}\"\n[hardware]\nlanes = {}",
-                4 * walkers
-            );
+            let more =
+                format!("[algorithm]\nplan = \"reduced\"\noutputs = \"{outputs}\"\n[hardware]\nlanes = {}", 4 * pes);
             let plan = plan(&design_text("d", [10, 10], [4.0, 2.0], 3.0, &more));
-            assert_eq!((plan.elements(), plan.ways(), plan.walkers()), (25, 4, walkers));
+            assert_eq!((plan.elements(), plan.channels(), plan.pes()), (25, 4, pes));
             for (product, window) in plan.products.iter().zip(&plan.schedule.windows) {
-                let lead = product.lead.map_or(0, |lead| plan.matrices[lead.matrix].nnz());
-                let entries = (lead + plan.matrices[product.matrix].nnz()) as u64;
+                let preload = product.preload.map_or(0, |preload| plan.matrices[preload.matrix].nnz());
+                let entries = (preload + plan.matrices[product.matrix].nnz()) as u64;
                 assert_eq!(window.macs, entries);
                 let few = product.coefficients == Coefficients::Friction || product.epilogue == Epilogue::Part;
                 if !few {
-                    assert_eq!(window.length, entries.div_ceil(walkers as u64), "{walkers} walkers: {product:?}");
+                    assert_eq!(window.length, entries.div_ceil(pes as u64), "{pes} PEs: {product:?}");
                 }
             }
         }
@@ -60,7 +58,7 @@ fn more_lanes_are_never_slower_on_the_papers_sensor() {
             assert!(timeline.latency_cycles < before && timeline.interval_cycles <= timeline.latency_cycles);
             before = timeline.latency_cycles;
             let Cells { cells, elements } = plan.estimator.slot().cells(&plan.design.sensor);
-            let (groups, of_group) = (cells / plan.ways(), plan.elements());
+            let (groups, of_group) = (cells / plan.channels(), plan.elements());
             assert!(groups * elements >= of_group && (groups - 1) * elements < of_group);
         }
     }

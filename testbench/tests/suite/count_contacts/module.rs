@@ -23,21 +23,21 @@ const MOST: i64 = (1 << BITS) - 1;
 /// A grid, how its weights come, and what they are.
 struct Case {
     name: &'static str,
-    ways: usize,
+    channels: usize,
     sensor: Sensor,
     frames: Vec<Vec<i64>>,
 }
 
 impl Case {
-    fn new(name: &'static str, ways: usize, [columns, rows]: [usize; 2]) -> Self {
+    fn new(name: &'static str, channels: usize, [columns, rows]: [usize; 2]) -> Self {
         let sensor = Sensor { columns, rows, pitch_mm: [2.0, 2.0], depth_mm: 2.0 };
-        Self { name, ways, sensor, frames: Vec::new() }
+        Self { name, channels, sensor, frames: Vec::new() }
     }
 
     /// What comes in a cycle: the taxels of each element.
     fn elements(&self) -> Vec<Vec<usize>> {
         let Sensor { columns, rows, .. } = self.sensor;
-        match self.ways {
+        match self.channels {
             4 => Quads::new(columns, rows).all().into_iter().map(Vec::from).collect(),
             _ => (0..columns * rows).map(|taxel| vec![taxel]).collect(),
         }
@@ -176,11 +176,11 @@ fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>, random: &mut ChaCha8
     let mut longest = 0;
     for case in cases {
         let lines = stimulus(case, random);
-        let (cycles, width) = (lines.len(), case.ways as u32 * BITS);
+        let (cycles, width) = (lines.len(), case.channels as u32 * BITS);
         longest = longest.max(cycles);
         fs::write(place(format!("{}.in", case.name)), lines.concat()).expect("writable");
         let (row, Sensor { columns, rows, .. }) = (case.row_width(), &case.sensor);
-        let (name, ways, expected) = (case.name, case.ways, latency::count_contacts(&case.sensor));
+        let (name, channels, expected) = (case.name, case.channels, latency::count_contacts(&case.sensor));
         let high = width + row + 2;
         let _ = write!(
             bench,
@@ -196,7 +196,7 @@ fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>, random: &mut ChaCha8
             $readmemh(\"{name}.in\", stimulus, 0, {cycles} - 1);
             file = $fopen(\"{name}.out\", \"w\");
         end
-        sptfra_contact_counter #(.WAYS({ways}), .COLUMNS({columns}), .ROWS({rows}), .DATA_BITS({BITS}), .EXPECTED_LATENCY({expected}))
+        sptfra_contact_counter #(.CHANNELS({channels}), .COLUMNS({columns}), .ROWS({rows}), .DATA_BITS({BITS}), .EXPECTED_LATENCY({expected}))
             subject (.clock(clock), .reset(in[{high}]), .contacts_take(in[{take}]), .weights_valid(in[{valid}]),
             .weights_row(in[{width} +: {row}]), .weights(in[{width}-1:0]), .contacts(contacts));
         always @(posedge clock) if (cycle <= {cycles}) begin
@@ -225,7 +225,7 @@ fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>, random: &mut ChaCha8
 /// A line for each cycle: reset, take, valid, row, weights.
 fn stimulus(case: &Case, random: &mut ChaCha8Rng) -> Vec<String> {
     let (elements, row) = (case.elements(), case.row_width());
-    let width = case.ways as u32 * BITS;
+    let width = case.channels as u32 * BITS;
     let took = latency::count_contacts(&case.sensor) as usize;
     let mut lines: Vec<u128> = vec![1 << (width + row + 2); 3];
     let (mut done, mut taken) = (0, 0);

@@ -54,8 +54,8 @@ fn lint_passes_and_a_flaw_fails() {
 #[test]
 fn a_file_that_is_missing_fails() {
     let folder = Folder::small();
-    fs::remove_file(folder.design().join("rom/small_4x3_visits.mem")).expect("can be removed");
-    target(&folder, "lint").refused("small_4x3_visits.mem");
+    fs::remove_file(folder.design().join("rom/small_4x3_slots.mem")).expect("can be removed");
+    target(&folder, "lint").refused("small_4x3_slots.mem");
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn a_wrong_word_or_a_missing_rom_ends_plain_icarus_with_an_error() {
     let ran = simulate(&folder);
     assert!(!ran.ok && ran.stdout.contains("FAIL: 1 words wrong"), "{ran:?}");
     let folder = Folder::small();
-    fs::remove_file(folder.design().join(format!("rom/{NAME}_visits.mem"))).expect("can be removed");
+    fs::remove_file(folder.design().join(format!("rom/{NAME}_slots.mem"))).expect("can be removed");
     let ran = simulate(&folder);
     assert!(!ran.ok && ran.stdout.contains("FAIL: "), "{ran:?}");
 }

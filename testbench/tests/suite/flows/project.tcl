@@ -225,14 +225,14 @@ standin::command get_cells {-quiet -hierarchical -filter=} 0 0 {
     if {[regexp {^ORIG_REF_NAME == (\w+) \|\| REF_NAME == (\w+)$} $option(-filter) -> module again]} {
         foreach path $::standin::sources {
             if {[file rootname [file tail $path]] eq $module && $again eq $module} {
-                lappend found "core/gen_lanes\[0\].$module"
+                lappend found "core/gen_pes\[0\].$module"
             }
         }
     } elseif {[regexp {^REF_NAME =~ (\S+)$} $option(-filter) -> kind]} {
         foreach cell [standin::netlist] {
             lassign $cell module primitive count
             for {set index 0} {$index < $count && [string match $kind $primitive]} {incr index} {
-                lappend found "core/gen_lanes\[0\].$module/$primitive$index"
+                lappend found "core/gen_pes\[0\].$module/$primitive$index"
             }
         }
     } else {

@@ -113,17 +113,18 @@ pub fn extremes(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
 fn worst_case(plan: &Plan, product: &Product) -> Vec<u32> {
     let full_scale = plan.design.hardware.full_scale_pa;
     let rows = &plan.matrices[product.matrix].rows;
-    let weight = |row: &&Vec<(u32, [i32; 4])>| row.iter().map(|&(_, ways)| i64::from(ways[0]).abs()).sum::<i64>();
+    let weight =
+        |row: &&Vec<(u32, [i32; 4])>| row.iter().map(|&(_, channels)| i64::from(channels[0]).abs()).sum::<i64>();
     let mut stress = vec![-full_scale; plan.taxels()];
-    for &(column, ways) in rows.iter().max_by_key(weight).into_iter().flatten() {
+    for &(column, channels) in rows.iter().max_by_key(weight).into_iter().flatten() {
         let column = column as usize;
-        if plan.ways() == 1 {
-            stress[column] = if ways[0] > 0 { -full_scale } else { full_scale };
+        if plan.channels() == 1 {
+            stress[column] = if channels[0] > 0 { -full_scale } else { full_scale };
             continue;
         }
         // The first taxel's row, unfolded.
         for (s, taxel) in plan.quads().members(column % plan.elements()).into_iter().enumerate() {
-            let value: f64 = (0..4).map(|way| sign(way, s) * f64::from(ways[way])).sum();
+            let value: f64 = (0..4).map(|channel| sign(channel, s) * f64::from(channels[channel])).sum();
             stress[taxel] = if value > 0.0 { -full_scale } else { full_scale };
         }
     }

@@ -49,7 +49,7 @@ module small_4x3 #(
 );
 
     localparam ROW_WIDTH = 3; // index of an orbit, a taxel and its mirror images
-    localparam VECTOR_BITS = 108; // of what 4 ways have in a cycle
+    localparam VECTOR_BITS = 108; // of what 4 channels have in a cycle
     localparam OPERAND_WIDTH = 6; // address in the operand memories
 
     wire reset; // of all but the streams, which stop with aresetn and go on a cycle after it
@@ -132,7 +132,7 @@ module small_4x3 #(
         .exponent           (exponent)
     );
 
-    // ---- Bz: stream to fixed point, taxels to parity classes
+    // ---- Bz: stream to fixed point, taxels to parity components
     wire frame_ready;
     wire cean_idle, direction_room, stress_valid;
     wire signed [26:0] stress;
@@ -153,7 +153,7 @@ module small_4x3 #(
         .COLUMNS         (4),
         .ROWS            (3),
         .SAMPLES         (1),
-        .WAYS            (4),
+        .CHANNELS        (4),
         .DATA_BITS       (27),
         .SCALED          (0),
         .NUMBER_SHIFT    (9),
@@ -238,7 +238,7 @@ module small_4x3 #(
         .flags            (frame_flags)
     );
 
-    // ---- Turns: We, Co and Op share one array of lanes
+    // ---- Program scheduler: We, Co and Op share one array of lanes
     wire issued;
     wire bank, residual_bank, field_bank, u_released, friction_known, field_release;
     wire signed [17:0] mu_x, mu_y;
@@ -255,12 +255,12 @@ module small_4x3 #(
     wire [31:0] bz_row_wide = { {(32-ROW_WIDTH){1'b0}}, bz_write_row};
     wire [OPERAND_WIDTH-1:0] bz_write_address = (bz_write_bank ? 6'd4 : 6'd0) + bz_row_wide[OPERAND_WIDTH-1:0];
 
-    sptfra_turns #(
+    sptfra_program_scheduler #(
         .PROGRAMS  (3),
         .RESIDUALS (2),
-        .PLACES    (4),
+        .BUFFERS   (4),
         .INTERVAL  (1)
-    ) turns (
+    ) scheduler (
         .clock            (aclk),
         .reset            (reset),
         .frame_ready      (frame_ready),
@@ -284,8 +284,8 @@ module small_4x3 #(
     end
 
     sptfra_spmv_array #(
-        .LANES            (1),
-        .WAYS             (4),
+        .PES              (1),
+        .CHANNELS         (4),
         .COEFFICIENT_BITS (18),
         .DATA_BITS        (27),
         .ELEMENTS         (4),
@@ -293,7 +293,7 @@ module small_4x3 #(
         .WORD_DEPTH       (200),
         .SEGMENT_DEPTH    (51),
         .OPERAND_DEPTH    (44),
-        .VISIT_DEPTH      (51),
+        .SLOT_DEPTH       (51),
         .MIRROR_SIDE      (0),
         .PRODUCTS         (11),
         .COUNT_BITS       (6),
@@ -323,7 +323,7 @@ module small_4x3 #(
         .FIRSTS           ({8'd7, 8'd4, 8'd0}),
         .START_WORDS      ({32'd140, 32'd92, 32'd0}),
         .START_SEGMENTS   ({16'd35, 16'd23, 16'd0}),
-        .START_VISITS     ({32'd35, 32'd23, 32'd0}),
+        .START_SLOTS      ({32'd35, 32'd23, 32'd0}),
         .DESTINATION_BITS (4),
         .SHIFTS           ({
             {4{6'd17}},
@@ -343,7 +343,7 @@ module small_4x3 #(
         .ROM_DIR          (ROM_DIR),
         .ROM_NAME         ("small_4x3"),
         .NUMBER_BITS      (16),
-        .LANE_NUMBERS     ({"00"})
+        .PE_NUMBERS       ({"00"})
     ) spmv_array (
         .clock         (aclk),
         .reset         (reset),
@@ -366,14 +366,14 @@ module small_4x3 #(
         .result_last   (result_last)
     );
 
-    // ---- Unfold: parity classes to taxels
+    // ---- Unfold: parity components to taxels
     wire taxel_y, taxel_last, weights_valid;
     wire [2:0] taxel_u, taxel_force;
     wire [ROW_WIDTH-1:0] taxel_row, weights_row;
     wire [VECTOR_BITS-1:0] taxels, weights;
 
     sptfra_unfold #(
-        .WAYS      (4),
+        .CHANNELS  (4),
         .ELEMENTS  (4),
         .DATA_BITS (27),
         .U_SHIFT   (1)
@@ -401,7 +401,7 @@ module small_4x3 #(
 
     // ---- We: weights
     sptfra_we #(
-        .WAYS          (4),
+        .CHANNELS      (4),
         .ELEMENTS      (4),
         .DATA_BITS     (27),
         .FOLD_SHIFT    (2),
@@ -430,7 +430,7 @@ module small_4x3 #(
     wire signed [26:0] g;
 
     sptfra_co #(
-        .WAYS          (4),
+        .CHANNELS      (4),
         .ELEMENTS      (4),
         .DATA_BITS     (27),
         .OPERAND_DEPTH (44),
@@ -474,7 +474,7 @@ module small_4x3 #(
     sptfra_estimator_line #(
         .COLUMNS                 (4),
         .ROWS                    (3),
-        .WAYS                    (4),
+        .CHANNELS                (4),
         .DATA_BITS               (27),
         .CELLS                   (4),
         .CELL_ELEMENTS           (4),

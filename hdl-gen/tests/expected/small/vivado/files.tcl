@@ -38,11 +38,12 @@ foreach file {
     sptfra_leading_bit.v
     sptfra_line.v
     sptfra_mac.v
-    sptfra_members.v
     sptfra_multiply.v
     sptfra_op.v
+    sptfra_orbit_images.v
     sptfra_output.v
     sptfra_output_word.v
+    sptfra_program_scheduler.v
     sptfra_ram.v
     sptfra_ratio.v
     sptfra_reset.v
@@ -56,14 +57,13 @@ foreach file {
     sptfra_spmv_array.v
     sptfra_spmv_collector.v
     sptfra_spmv_lane.v
+    sptfra_spmv_pe.v
     sptfra_spmv_sequencer.v
-    sptfra_spmv_way.v
     sptfra_summary.v
     sptfra_taxel_stream.v
     sptfra_taxel_walk.v
     sptfra_times_index.v
     sptfra_tree.v
-    sptfra_turns.v
     sptfra_unfold.v
     sptfra_we.v
 } {
@@ -72,10 +72,10 @@ foreach file {
 
 set rom {}
 foreach file {
-    small_4x3_columns_lane00.mem
-    small_4x3_macs_lane00.mem
-    small_4x3_values_lane00.mem
-    small_4x3_visits.mem
+    small_4x3_columns_pe00.mem
+    small_4x3_macs_pe00.mem
+    small_4x3_slots.mem
+    small_4x3_values_pe00.mem
 } {
     lappend rom [file join $root rom $file]
 }

@@ -25,17 +25,21 @@ const FREE: &[&str] = &[
     "*sptfra_unfold*",
 ];
 const REDUCED_BROKEN: &[Broken] = &[
-    ("sptfra_turns", "(fields_due != RESIDUALS[1:0])", "1'b1"),
-    ("sptfra_turns", "                    next_field_bank <= !next_field_bank;\n", ""),
-    ("sptfra_turns", "(residuals_there != 2'd0) && friction_known", "(residuals_there != 2'd0)"),
-    ("sptfra_turns", "friction_known && (fields", "friction_known && frame_ready && (fields"),
+    ("sptfra_program_scheduler", "(fields_due != RESIDUALS[1:0])", "1'b1"),
+    ("sptfra_program_scheduler", "                    next_field_bank <= !next_field_bank;\n", ""),
+    ("sptfra_program_scheduler", "(residuals_there != 2'd0) && friction_known", "(residuals_there != 2'd0)"),
+    ("sptfra_program_scheduler", "friction_known && (fields", "friction_known && frame_ready && (fields"),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
     ("sptfra_op", "summary_there && output_idle && ", "summary_there && "),
 ];
 const LATENCY_BROKEN: &[Broken] = &[
-    ("sptfra_turns", "(INTERVAL == 0) && (fields_due != 2'd0)", "1'b0"),
-    ("sptfra_turns", "(residuals_there != 2'd0) && friction_known", "(fields_due != 2'd0) && friction_known"),
+    ("sptfra_program_scheduler", "(INTERVAL == 0) && (fields_due != 2'd0)", "1'b0"),
+    (
+        "sptfra_program_scheduler",
+        "(residuals_there != 2'd0) && friction_known",
+        "(fields_due != 2'd0) && friction_known",
+    ),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
     ("sptfra_op", "output_idle && ((FIELD == 0) || (fields_there != 2'd0))", "output_idle"),
@@ -43,8 +47,8 @@ const LATENCY_BROKEN: &[Broken] = &[
 ];
 const JOINT_BROKEN: &[Broken] = &[
     // The line has no third frame whose residual could wait for a place.
-    ("sptfra_turns", "field_waits = residual_due || (", "field_waits = ("),
-    ("sptfra_turns", "(residuals_there != 2'd0) && friction_known", "(residuals_there != 2'd0)"),
+    ("sptfra_program_scheduler", "field_waits = residual_due || (", "field_waits = ("),
+    ("sptfra_program_scheduler", "(residuals_there != 2'd0) && friction_known", "(residuals_there != 2'd0)"),
     ("sptfra_estimator_joint", "assign sums_take = search_start;", "assign sums_take = answer_take;"),
     ("sptfra_joint_stages", "u_there && search_free", "search_free"),
     ("sptfra_joint_stages", "searching ? features_start : !search_start", "searching ? features_start : 1'b1"),
@@ -70,8 +74,8 @@ const FEATURES_BROKEN: &[Broken] = &[
     ),
 ];
 const PAPER_BROKEN: &[Broken] = &[
-    ("sptfra_turns", "(PLACES == 0) || (frames_held != PLACES)", "1'b1"),
-    ("sptfra_turns", "wire free = !busy || issued;", "wire free = 1'b1;"),
+    ("sptfra_program_scheduler", "(BUFFERS == 0) || (frames_held != BUFFERS)", "1'b1"),
+    ("sptfra_program_scheduler", "wire free = !busy || issued;", "wire free = 1'b1;"),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
     ("sptfra_op", "summary_there && output_idle && ", "summary_there && "),
@@ -79,8 +83,8 @@ const PAPER_BROKEN: &[Broken] = &[
     ("sptfra_output", "issued && issued_last && advance", "issued && issued_last"),
 ];
 const RESULTANTS_BROKEN: &[Broken] = &[
-    ("sptfra_turns", "(u_held != 2'd2) && ", ""),
-    ("sptfra_turns", "wire free = !busy || issued;", "wire free = 1'b1;"),
+    ("sptfra_program_scheduler", "(u_held != 2'd2) && ", ""),
+    ("sptfra_program_scheduler", "wire free = !busy || issued;", "wire free = 1'b1;"),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
     ("sptfra_op", "summary_there && output_idle && ", "summary_there && "),
@@ -110,7 +114,7 @@ pub const PROOFS: &[Proof] = &[
         parameters: "",
         models: &[("sptfra_spmv_array", "reduced_lanes")],
         free: FREE,
-        free_wires: &["turns.residual_written"],
+        free_wires: &["scheduler.residual_written"],
         induction: "5",
         altered: &[],
         broken: REDUCED_BROKEN,
@@ -124,12 +128,12 @@ pub const PROOFS: &[Proof] = &[
         parameters: "",
         models: &[("sptfra_spmv_array", "reduced_lanes")],
         free: FREE,
-        free_wires: &["turns.residual_written"],
+        free_wires: &["scheduler.residual_written"],
         induction: "5",
         altered: &[("subject", ".RESIDUALS (2)", ".RESIDUALS (1)")],
         broken: &[
-            ("sptfra_turns", "(fields_due != RESIDUALS[1:0])", "1'b1"),
-            ("sptfra_turns", "field_waits = residual_due || (", "field_waits = ("),
+            ("sptfra_program_scheduler", "(fields_due != RESIDUALS[1:0])", "1'b1"),
+            ("sptfra_program_scheduler", "field_waits = residual_due || (", "field_waits = ("),
         ],
     },
     Proof {
@@ -141,7 +145,7 @@ pub const PROOFS: &[Proof] = &[
         parameters: "",
         models: &[("sptfra_spmv_array", "reduced_lanes")],
         free: FREE,
-        free_wires: &["turns.residual_written"],
+        free_wires: &["scheduler.residual_written"],
         induction: "5",
         altered: &[],
         broken: LATENCY_BROKEN,
@@ -155,7 +159,7 @@ pub const PROOFS: &[Proof] = &[
         parameters: "",
         models: &[("sptfra_spmv_array", "reduced_lanes")],
         free: FREE,
-        free_wires: &["turns.residual_written"],
+        free_wires: &["scheduler.residual_written"],
         induction: "5",
         altered: &[],
         broken: JOINT_BROKEN,
@@ -169,7 +173,7 @@ pub const PROOFS: &[Proof] = &[
         parameters: "",
         models: &[("sptfra_spmv_array", "reduced_lanes")],
         free: FREE,
-        free_wires: &["turns.residual_written"],
+        free_wires: &["scheduler.residual_written"],
         induction: "5",
         altered: &[],
         broken: &[("sptfra_joint_stages", "u_released = features_start;", "u_released = search_start;")],

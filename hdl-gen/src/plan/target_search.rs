@@ -112,12 +112,12 @@ fn changes(design: &Design) -> Vec<Change> {
     let quicker = estimators::quicker(algorithm.estimator).filter(|_| design.hardware.optimise != Optimise::Area);
     let outputs = (algorithm.outputs == Outputs::Field).then_some(Outputs::Resultants);
     let outputs = [Some(None), outputs.map(Some)].into_iter().flatten();
-    let ways = [Some(None), quicker.map(Some)];
+    let choices = [Some(None), quicker.map(Some)];
     let wider = STREAM_BITS.into_iter().filter(|&bits| bits > design.hardware.stream_bits).map(Some);
     let streams: Vec<Option<u32>> = [None].into_iter().chain(wider).collect();
     let mut all = Vec::new();
     for outputs in outputs {
-        for quicker in ways.into_iter().flatten() {
+        for quicker in choices.into_iter().flatten() {
             all.extend(streams.iter().map(|&stream_bits| Change { outputs, quicker, stream_bits }));
         }
     }

@@ -1,4 +1,4 @@
-//! `--target-us`: the fewest lanes that meet the need, or what would.
+//! `--target-us`: the fewest lanes that meet the target, or what would.
 
 use golden::design::{Design, PlanKind};
 use hdl_gen::plan::{Plan, PlanError};
@@ -9,10 +9,10 @@ const JOINT: &str = "estimator = \"joint\"\ngain = 1\nfriction_correction = [1, 
 fn sensor(algorithm: &str, hardware: &str) -> Design {
     let text = format!(
         "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
-         name = \"need\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
+         name = \"target\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
          [algorithm]\nplan = \"reduced\"\n{algorithm}\n[hardware]\n{hardware}\n"
     );
-    Design::from_toml(&text, "need.toml").expect("a design")
+    Design::from_toml(&text, "target.toml").expect("a design")
 }
 
 fn refusal(algorithm: &str, target_us: f64) -> String {
@@ -23,7 +23,7 @@ fn refusal(algorithm: &str, target_us: f64) -> String {
 }
 
 #[test]
-fn the_fewest_lanes_that_meet_the_need() {
+fn the_fewest_lanes_that_meet_the_target() {
     for target_us in [13.0, 20.0, 40.0] {
         let found = Plan::meeting(&sensor("", ""), target_us).expect("a plan");
         let lanes = found.design.hardware.lanes;
@@ -44,7 +44,7 @@ fn offered(refusal: &str) -> &str {
 }
 
 #[test]
-fn only_remedies_that_meet_the_need_are_offered() {
+fn only_remedies_that_meet_the_target_are_offered() {
     let line = |target_us| refusal("", target_us);
     let joint = |target_us| refusal(JOINT, target_us);
     for (refusal, expected) in [
@@ -60,7 +60,7 @@ fn only_remedies_that_meet_the_need_are_offered() {
     }
 }
 
-/// What is offered is the smallest change: it meets the need, and what comes before it does not.
+/// What is offered is the smallest change: it meets the target, and what comes before it does not.
 #[test]
 fn remedies_do_what_is_said_of_them() {
     let met = |algorithm: &str, hardware: &str, target_us: f64| {
@@ -82,7 +82,7 @@ fn a_small_area_keeps_its_estimator() {
 
 /// What is offered does what is said of it.
 #[test]
-fn the_clock_that_is_offered_meets_the_need() {
+fn the_clock_that_is_offered_meets_the_target() {
     let Err(PlanError::Target { needed_mhz, .. }) = Plan::meeting(&sensor("", ""), 8.0) else { panic!() };
     let faster = sensor("", &format!("clock_mhz = {needed_mhz:?}"));
     assert!(Plan::meeting(&faster, 8.0).is_ok(), "{needed_mhz}");
@@ -90,7 +90,7 @@ fn the_clock_that_is_offered_meets_the_need() {
 
 /// The paper's plan has lanes of its own choice.
 #[test]
-fn a_need_that_nothing_can_be_found_for_is_refused() {
+fn a_target_that_nothing_can_be_found_for_is_refused() {
     let mut design = sensor("", "");
     design.algorithm.plan = PlanKind::Paper;
     let paper = Plan::meeting(&design, 5.0).expect_err("refused").to_string();

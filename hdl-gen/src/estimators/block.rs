@@ -22,7 +22,7 @@ pub struct Given<'a> {
     /// Elements of a vector as the lanes see it: taxels, or quads of the folded grid.
     pub elements: usize,
     /// Values of an element: 1, or the members of a quad, which arrive at a time.
-    pub ways: usize,
+    pub channels: usize,
     /// Format of a taxel's stress.
     pub stress: Format,
     /// Format of a taxel's `u_q`.
@@ -91,10 +91,10 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// Of `per_cell` taxels each. Where `ways` taxels arrive at a time (the members of a quad, of which there are
+    /// Of `per_cell` taxels each. Where `channels` taxels arrive at a time (the members of a quad, of which there are
     /// `elements`), they go to as many cells.
-    pub fn new(elements: usize, ways: usize, per_cell: usize) -> Self {
-        Self { cells: ways * elements.div_ceil(per_cell), elements: per_cell }
+    pub fn new(elements: usize, channels: usize, per_cell: usize) -> Self {
+        Self { cells: channels * elements.div_ceil(per_cell), elements: per_cell }
     }
 
     /// Levels of the adder tree over the cells.
@@ -144,8 +144,8 @@ pub trait Slot {
     /// Its module in `hdl-gen/rtl`, with the ports that every estimator has.
     fn module(&self) -> &'static str;
 
-    /// The parameters of its instance, for values that arrive `ways` at a time.
-    fn parameters(&self, design: &Design, ways: usize) -> Parameters;
+    /// The parameters of its instance, for values that arrive `channels` at a time.
+    fn parameters(&self, design: &Design, channels: usize) -> Parameters;
 
     /// Modules of the library that stand only in a `generate if` that these parameters do not take.
     fn without(&self) -> Vec<&'static str> {

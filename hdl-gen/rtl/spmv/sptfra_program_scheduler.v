@@ -9,13 +9,13 @@
 
 `default_nettype none
 
-module sptfra_turns #(
+module sptfra_program_scheduler #(
     // 1, or 3 with a field that the lanes put together
     parameter PROGRAMS = 3,
     // Frames whose residual, what is left of the stress for the field, has a place: 1 or 2
     parameter integer RESIDUALS = 1,
     // Frames that have a place until they are released; 0: nothing of a frame stays
-    parameter PLACES = 4,
+    parameter BUFFERS = 4,
     // 1: the next frame's first program goes ahead of a field whose search is not finished, best for the interval; 0:
     // it waits until this field is under way, best for the latency under load
     parameter INTERVAL = 1
@@ -54,7 +54,7 @@ module sptfra_turns #(
     wire may_field;
     wire may_residual;
     wire field_waits; // and the next frame for it
-    wire room = (PLACES == 0) || (frames_held != PLACES);
+    wire room = (BUFFERS == 0) || (frames_held != BUFFERS);
     wire may_frame = frame_ready && (u_held != 2'd2) && room && !field_waits;
     wire free = !busy || issued;
 
