@@ -56,6 +56,18 @@ def headers(root: Path) -> list[tuple[str, list[str], int]]:
     return [(name, [" ".join(block.split()) for block in blocks], most) for name, blocks, most in found]
 
 
+def parameters(root: Path) -> list[str]:
+    """Parameters of modules without their meaning: a comment says it of up to three, or names the module that does."""
+    wrong = []
+    for path in sorted((root / "hdl-gen/rtl").rglob("*.v")):
+        listed = re.search(r"\nmodule \w+ #\(\n(.*?)\n\) \(", path.read_text(encoding="utf-8"), re.DOTALL)
+        for said, group in re.findall(r"((?: *//.*\n)*)((?:(?! *//).+\n?)+)", listed[1] if listed else ""):
+            names = re.findall(r"^ *parameter [^=\n]*?(\w+)(?: =|$)", group, re.MULTILINE)
+            if not said or (len(names) > 3 and not re.search("sptfra_|Derived", said)):
+                wrong.append(f"{path.relative_to(root)}: say what {', '.join(names)} mean, up to three in a comment")
+    return wrong
+
+
 def prose(text: str) -> tuple[list[str], list[str]]:
     """Blocks of running text, and the cells of tables, without code, comments and headings."""
     text = re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)
@@ -161,6 +173,7 @@ def check(root: Path) -> list[str]:
         long = [sentence for sentence in sentences(blocks, r"(?<=[.!?:])\s+") if len(sentence.split()) > most]
         wrong += [f"{name}: {len(sentence.split())} words: {sentence[:90]}…" for sentence in long]
         wrong += old_words(name, plain(" ".join(blocks)))
+    wrong += parameters(root)
     if total > ALL_WORDS:
         wrong.append(f"{total} words in all; at most {ALL_WORDS}")
     mean = sum(lengths) / max(len(lengths), 1)

@@ -12,6 +12,7 @@ module sptfra_tree #(
     parameter integer COUNT = 5,
     // Bits of a number and of the result; a sum wraps
     parameter integer WIDTH = 48,
+    // 1: the largest number; 0: the sum
     parameter integer LARGEST = 0
 ) (
     input  wire clock,

@@ -10,9 +10,9 @@
 `default_nettype none
 
 module sptfra_standard_error #(
-    // 16 fraction bits
+    // Error of the model, as a share of |F_z| with 16 fraction bits
     parameter [17:0] MODEL = 18'd0,
-    // 13 fraction bits
+    // Errors by noise and by stress at the border, as the header multiplies them, with 13 fraction bits
     parameter [16:0] NOISE = 17'd0,
     parameter [16:0] BORDER = 17'd0
 ) (

@@ -12,6 +12,7 @@
 module sptfra_banks #(
     // Taxels of a frame
     parameter TAXELS = 100,
+    // Bits of an offset, in steps of the stress
     parameter OFFSET_BITS = 29,
     // Places of the map, 0 without one, and its content at power-up: see sptfra_dead_bank
     parameter REPLACEABLE = 0,

@@ -38,7 +38,7 @@ module sptfra_bz #(
     // As of sptfra_banks
     parameter [6:0] CURVE_COUNT = 7'd1,
     parameter signed [26:0] CURVE_LAST_VALUE = 27'sd0,
-    // Places for dead taxels, 0 for none, and whether the banks say which they are; else, or at power-up, these
+    // Dead taxels: see sptfra_replace; with MAPPED the others are the content of the banks at power-up
     parameter REPLACEABLE = 0,
     parameter MAPPED = 0,
     parameter [3:0] REPLACED_COUNT = 4'd0,

@@ -14,10 +14,11 @@
 module sptfra_calibration #(
     // Taxels of a frame
     parameter TAXELS = 12,
+    // Bits of an offset, in steps of the stress
     parameter OFFSET_BITS = 29,
-    // Largest magnitude of an offset
+    // Largest magnitude of an offset, in steps of the stress
     parameter signed [31:0] OFFSET_LIMIT = 32'sd134217728,
-    // At power-up
+    // At power-up: least sum |b| of a contact and noise floor, in steps of the stress, and CRC of the bank
     parameter [31:0] CONTACT = 32'd1,
     parameter [26:0] NOISE = 27'd1,
     parameter [31:0] CRC = 32'd0,

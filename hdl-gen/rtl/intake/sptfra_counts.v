@@ -10,10 +10,11 @@
 module sptfra_counts #(
     // 1: a gain's exponent is a shift behind the product; 0: the count was decoded by it
     parameter SHIFTS = 0,
+    // Bits of an offset, in steps of the stress
     parameter OFFSET_BITS = 27,
     // Bits dropped of the product: with SHIFTS less the gain's exponent, 0 to 47
     parameter integer SHIFT = 16,
-    // Full scale, less what the rounding of gains takes from it, and what a larger stress becomes
+    // In steps of the stress: full scale less what the rounding of gains takes, and what a larger stress becomes
     parameter signed [47:0] FULL_SCALE = 48'sd51200000,
     parameter signed [26:0] STRESS_BOUND = 27'sd51200000
 ) (

@@ -10,7 +10,7 @@
 `default_nettype none
 
 module sptfra_creep #(
-    // Of a frame
+    // Taxels of a frame
     parameter TAXELS = 100,
     // {fraction bits, factor}: of the strength; of the share that creep goes on in a frame, 18 fraction bits and more
     parameter [22:0] STRENGTH = {6'd17, 17'd52429},

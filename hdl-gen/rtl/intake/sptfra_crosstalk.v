@@ -13,10 +13,11 @@ module sptfra_crosstalk #(
     // Taxels in x and y
     parameter COLUMNS = 10,
     parameter ROWS = 10,
-    // Factors a, b, d of sums over the powers of two that hold their taxels, with so many fraction bits
+    // Factors a, b, d of sums over the powers of two that hold their taxels
     parameter [17:0] ROW_FACTOR = 18'd0,
     parameter [17:0] COLUMN_FACTOR = 18'd0,
     parameter [17:0] TOTAL_FACTOR = 18'd0,
+    // Fraction bits of the factors
     parameter FRACTION = 17,
     // Full scale: what a larger stress becomes
     parameter signed [26:0] STRESS_BOUND = 27'sd51200000

@@ -18,9 +18,10 @@ module sptfra_curve_bank #(
     parameter LEVELS = 4,
     // Word of a bank with which this part of it begins
     parameter [15:0] FIRST = 16'd26,
-    // At power-up; values, slopes and shifts stand in files
+    // At power-up: segments, and the numbers with which they begin; values, slopes and shifts stand in files
     parameter [6:0] COUNT = 7'd1,
     parameter [27*(1<<LEVELS)-1:0] KNOTS = {27*(1<<LEVELS){1'b0}},
+    // At power-up: number with which the last segment ends, and the value there
     parameter signed [26:0] LAST = 27'sd33554431,
     parameter signed [26:0] LAST_VALUE = 27'sd0,
     // Prefix of the ROM file names, and what they begin with

@@ -19,7 +19,7 @@ module sptfra_dead_bank #(
     parameter REPLACEABLE = 2,
     // Word of a bank with which this part of it begins
     parameter [15:0] FIRST = 16'd26,
-    // At power-up; the weights stand in files, one for each place
+    // At power-up: dead taxels, fraction bits of the weights, numbers; the weights stand in files, one for each place
     parameter [3:0] COUNT = 4'd0,
     parameter [4:0] WEIGHT_SHIFT = 5'd17,
     parameter [16*REPLACEABLE-1:0] NUMBERS = {16*REPLACEABLE{1'b0}},

@@ -14,8 +14,9 @@ module sptfra_replace #(
     parameter TAXELS = 100,
     // Places for dead taxels, 1 to 8
     parameter REPLACEABLE = 8,
-    // 1: a calibration in RAM says which taxels are dead; 0: these
+    // 1: a calibration in RAM says which taxels are dead; 0: these are
     parameter MAPPED = 0,
+    // Dead taxels, fraction bits of the weights, numbers
     parameter [3:0] REPLACED_COUNT = 4'd0,
     parameter [4:0] REPLACED_SHIFT = 5'd17,
     parameter [16*REPLACEABLE-1:0] REPLACED_TAXELS = {16*REPLACEABLE{1'b0}}, // ascending

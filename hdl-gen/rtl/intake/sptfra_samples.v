@@ -17,14 +17,16 @@ module sptfra_samples #(
     // Exponent of the number's step, negated, and its largest magnitude, of the stress or of the counts
     parameter NUMBER_SHIFT = 9,
     parameter [26:0] NUMBER_BOUND = 27'd51200000,
-    // 1: the stream carries counts; gains and full scale: see sptfra_counts
+    // 1: the stream carries counts; 0: pascals
     parameter COUNTS = 0,
     // 1: constants and curve come from the banks of a calibration
     parameter CALIBRATED = 0,
-    // 1: each taxel has an exponent, a gain and an offset of its own; 0: these
+    // 1: each taxel has an exponent, a gain and an offset of its own; 0: EXPONENT and GAIN, and no offset
     parameter PER_TAXEL = 0,
+    // Exponent with which a count is decoded, and gain with 16 fraction bits
     parameter signed [9:0] EXPONENT = 10'sd0,
     parameter signed [17:0] GAIN = 18'sd65536,
+    // Counts to stress, see sptfra_counts: bits of an offset, bits dropped of a product, limits
     parameter OFFSET_BITS = 27,
     parameter integer COUNT_SHIFT = 16,
     parameter signed [47:0] FULL_SCALE = 48'sd51200000,
@@ -33,7 +35,7 @@ module sptfra_samples #(
     parameter CURVE_LEVELS = 0,
     parameter [27*(1<<CURVE_LEVELS)-1:0] CURVE_KNOTS = {27*(1<<CURVE_LEVELS){1'b1}},
     parameter signed [26:0] CURVE_LAST = 27'sd33554431,
-    // Prefix of the ROM file names, and what they begin with; those of the taxels
+    // Prefix of the ROM file names, what they begin with, and what those of the taxels' constants begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
     parameter TAXEL_NAME = ROM_NAME,

@@ -10,7 +10,7 @@
 `default_nettype none
 
 module sptfra_smoothing #(
-    // Of a frame, and of a beat: 1, 2, 4 or 8. What fills the last one is zero
+    // Taxels of a frame, and of a beat: 1, 2, 4 or 8. What fills the last one is zero
     parameter TAXELS = 100,
     parameter SAMPLES = 1,
     // A step beyond FACTOR / 2^FRACTION of the frame's largest stress restarts the average

@@ -9,6 +9,7 @@
 `default_nettype none
 
 module sptfra_taxel_stream #(
+    // Taxels of a frame
     parameter TAXELS = 100,
     // Taxels of a beat: 1, 2, 4 or 8
     parameter SAMPLES = 1,

@@ -10,11 +10,11 @@
 `default_nettype none
 
 module sptfra_program_scheduler #(
-    // 1, or 3 with a field that the lanes put together
+    // Programs of a frame: 1, or 3 with a field that the lanes put together
     parameter PROGRAMS = 3,
-    // Frames whose residual, what is left of the stress for the field, has a place: 1 or 2
+    // Frames whose residual, what is left of the stress for the field, has a buffer: 1 or 2
     parameter integer RESIDUALS = 1,
-    // Frames that have a place until they are released; 0: nothing of a frame stays
+    // Frames that have a buffer until they are released; 0: nothing of a frame stays
     parameter BUFFERS = 4,
     // 1: the next frame's first program goes ahead of a field whose search is not finished, best for the interval; 0:
     // it waits until this field is under way, best for the latency under load
@@ -24,7 +24,7 @@ module sptfra_program_scheduler #(
     input  wire reset,
     // Data
     input  wire frame_ready, // a frame waits in its bank
-    input  wire u_released, // one cycle: the place of a frame's u_q is free
+    input  wire u_released, // one cycle: the buffer of a frame's u_q is free
     input  wire residual_written, // one cycle: the second program's results are there
     input  wire friction_known, // until the field is started
     input  wire frame_released, // one cycle: a frame has left
@@ -46,7 +46,7 @@ module sptfra_program_scheduler #(
     endgenerate
 
     reg busy;
-    // Frames started whose u_q has a place: two at most. A release comes from afar and is counted a cycle later
+    // Frames started whose u_q has a buffer: two at most. A release comes from afar and is counted a cycle later
     reg [1:0] u_counted;
     reg released;
     wire [1:0] u_held = u_counted - {1'b0, released};

@@ -18,9 +18,10 @@ module sptfra_spmv_array #(
     parameter ELEMENTS = 25,
     // Vectors that a product reads side by side, at most
     parameter VECTORS = 3,
-    // Words of the PEs' ROMs and operand memories, and of the ROM of write-back slots
+    // Words of the PEs' ROMs: coefficients with their columns, and row segments
     parameter WORD_DEPTH = 512,
     parameter SEGMENT_DEPTH = 64,
+    // Words of the operand memories, and of the ROM of write-back slots
     parameter OPERAND_DEPTH = 200,
     parameter SLOT_DEPTH = 200,
     // Orbits along a side of a grid of which some products are mirrored at the diagonal; 0: none is

@@ -28,8 +28,9 @@ module sptfra_spmv_pe #(
     parameter MIRROR_SIDE = 0,
     // Whether friction components take the coefficients' place in some products
     parameter FRICTION = 1,
-    // Prefix of the ROM file names, and the names
+    // Prefix of the ROM file names
     parameter ROM_DIR = "",
+    // Names of the ROM files: coefficients, columns, row segments
     parameter VALUES_FILE = "",
     parameter COLUMNS_FILE = "",
     parameter MACS_FILE = "",

@@ -36,9 +36,10 @@ module sptfra_spmv_sequencer #(
     parameter [15:0] RESIDUAL_BANK = 16'd0,
     // Last products of their programs
     parameter [PRODUCTS-1:0] LASTS = {1'b1, {(PRODUCTS-1){1'b0}}},
-    // Programs: first product, and addresses of their data in the ROMs of words, of row segments, of write-back slots
+    // Programs, and the first product of each
     parameter PROGRAMS = 1,
     parameter [PROGRAMS*8-1:0] FIRSTS = {(PROGRAMS*8){1'b0}},
+    // Addresses at which their data begin in the ROMs of words, of row segments and of write-back slots
     parameter [PROGRAMS*32-1:0] START_WORDS = {(PROGRAMS*32){1'b0}},
     parameter [PROGRAMS*16-1:0] START_SEGMENTS = {(PROGRAMS*16){1'b0}},
     parameter [PROGRAMS*32-1:0] START_SLOTS = {(PROGRAMS*32){1'b0}},

@@ -111,4 +111,10 @@ fn a_page_that_breaks_a_rule_is_refused() {
         let (passed, said) = check(text);
         assert!(!passed && said.contains(message), "{message}:\n{said}");
     }
+    fs::create_dir_all(root.join("hdl-gen/rtl")).expect("a folder");
+    let module = "// A module.\n\nmodule a #(\n    // Taxels\n    parameter B = 1\n) (\n    input wire c\n);\n";
+    for (text, message) in [(module.replace("    // Taxels\n", ""), "say what B mean"), (module.to_owned(), "")] {
+        fs::write(root.join("hdl-gen/rtl/a.v"), text).expect("written");
+        assert!(check(right).1.contains(message) && check(right).0 == message.is_empty(), "{}", check(right).1);
+    }
 }
