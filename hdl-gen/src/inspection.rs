@@ -61,7 +61,7 @@ pub fn figures(plan: &Plan) -> Value {
     if let Some(expected) = plan.design.expected_error() {
         value["expected_error"] = json!(expected);
     }
-    if let Some((key, own)) = plan.estimator.slot().metadata().own {
+    if let Some((key, own)) = plan.estimator.block().metadata().own {
         value[key] = own;
     }
     value

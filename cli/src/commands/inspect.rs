@@ -74,7 +74,7 @@ fn text_report(plan: &Plan) -> Result<String, std::fmt::Error> {
     reductions(&mut text, plan)?;
     work(&mut text, plan)?;
     speed(&mut text, plan)?;
-    text += &plan.estimator.slot().report(&plan.design);
+    text += &plan.estimator.block().report(&plan.design);
     resources(&mut text, plan)?;
     energy(&mut text, plan)?;
     numbers(&mut text, plan)?;
@@ -128,7 +128,7 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
         let expected = expected.to_string().replacen(" (median", &format!("\n{INDENT}(median"), 1);
         writeln!(out, "  error        {expected}")?;
     }
-    writeln!(out, "  kernel       {}", plan.estimator.slot().kernel_advice(&plan.design, INDENT))?;
+    writeln!(out, "  kernel       {}", plan.estimator.block().kernel_advice(&plan.design, INDENT))?;
     if let Some((layer, remedy)) = thin.as_deref().and_then(|thin| thin.split_once(": ")) {
         writeln!(out, "  thin         {layer}:\n{INDENT}{remedy}")?;
     }
@@ -197,7 +197,7 @@ fn speed(out: &mut String, plan: &Plan) -> std::fmt::Result {
         (
             "search",
             timeline.search_cycles,
-            count(plan.estimator.slot().cells(&plan.design.sensor).cells, "evaluation cell"),
+            count(plan.estimator.block().cells(&plan.design.sensor).cells, "evaluation cell"),
         ),
     ] {
         table.row([what.to_owned(), cycles.to_string(), format!("{:.2}", cycles as f64 / clock), remark]);

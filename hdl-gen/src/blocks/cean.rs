@@ -8,8 +8,8 @@ use crate::plan::Plan;
 
 /// Parameters of `sptfra_cean`.
 pub fn parameters(plan: &Plan) -> Parameters {
-    let slot = plan.estimator.slot();
-    let pitch = slot.pitch();
+    let estimator_block = plan.estimator.block();
+    let pitch = estimator_block.pitch();
     let [pitch_x, pitch_y] = pitch.unwrap_or_default();
     let parameters = Parameters::new()
         .count("COLUMNS", plan.design.sensor.columns)
@@ -20,5 +20,5 @@ pub fn parameters(plan: &Plan) -> Parameters {
     parameters
         .signed("PITCH_X", SHORT_BITS, pitch_x)
         .signed("PITCH_Y", SHORT_BITS, pitch_y)
-        .cycles("EXPECTED_LATENCY", slot.contact_latency())
+        .cycles("EXPECTED_LATENCY", estimator_block.contact_latency())
 }

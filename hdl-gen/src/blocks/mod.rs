@@ -27,12 +27,12 @@ use crate::plan::resources::BlockCost;
 
 /// What each block of the design takes, in the data's order.
 pub fn costs(plan: &Plan) -> Vec<BlockCost> {
-    let slot = plan.estimator.slot();
+    let estimator_block = plan.estimator.block();
     let mut costs: Vec<BlockCost> = ingress_fifo::cost(plan).into_iter().chain(calibration::cost(plan)).collect();
-    costs.extend([bz::cost(plan), slot.contact_block()]);
+    costs.extend([bz::cost(plan), estimator_block.contact_block()]);
     costs.extend([array::cost(plan), we::cost(), co::cost(plan), field::cost(plan)]);
     costs.extend(contacts::cost(plan));
-    costs.extend(slot.search_blocks(&plan.design.sensor));
+    costs.extend(estimator_block.search_blocks(&plan.design.sensor));
     costs.push(op::cost());
     costs
 }

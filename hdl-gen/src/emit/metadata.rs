@@ -115,7 +115,7 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
             json!({ "first_word": first_word, "vectors": names })
         })
         .collect();
-    let (estimator, streams) = (plan.estimator.slot().metadata(), plan.streams());
+    let (estimator, streams) = (plan.estimator.block().metadata(), plan.streams());
     let mut value = json!({
         "format": FORMAT,
         "name": plan.design.name,

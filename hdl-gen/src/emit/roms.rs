@@ -91,7 +91,7 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
     if let Some(dead) = &plan.dead {
         files.insert(format!("rom/{name}_neighbours.mem"), weights(&dead.words()));
     }
-    for (contents, words) in plan.estimator.slot().roms() {
+    for (contents, words) in plan.estimator.block().roms() {
         insert_rom(files, format!("rom/{name}_{contents}.mem"), weights(&words));
     }
 }

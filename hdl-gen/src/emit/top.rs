@@ -124,12 +124,12 @@ impl View {
     fn new(plan: &Plan) -> Self {
         let (design, hardware) = (&plan.design, &plan.design.hardware);
         let timeline = &plan.timeline;
-        let slot = plan.estimator.slot();
+        let estimator_block = plan.estimator.block();
         let folded = plan.channels() > 1;
         let streams = plan.streams();
         let unpack = streams.intake == Intake::Unpacked;
         let [dead_command_bits, dead_result_bits] = plan.calibration.as_ref().map_or([0, 0], calibration::dead_bits);
-        let estimator = slot.parameters(design, plan.channels());
+        let estimator = estimator_block.parameters(design, plan.channels());
         let estimator = plan.thresholds.error.iter().fold(estimator, |parameters, error| error.parameters(parameters));
         let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
         Self {
@@ -203,7 +203,7 @@ impl View {
             unfold: verilog(&unfold::parameters(plan)),
             we: verilog(&we::parameters(plan)),
             co: verilog(&co::parameters(plan)),
-            estimator_module: slot.module(),
+            estimator_module: estimator_block.module(),
             estimator_parameters: verilog(&estimator),
             field_module: field::module(plan),
             field_parameters: verilog(&field::parameters(plan)),
@@ -250,7 +250,7 @@ pub(super) fn render(plan: &Plan, debug: bool) -> Result<(String, String), EmitE
 
 /// Modules of the library that stand only in a `generate if` that neither the design takes nor the default parameters.
 pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
-    let mut without = plan.estimator.slot().without();
+    let mut without = plan.estimator.block().without();
     if plan.thresholds.error.is_none() {
         without.push("sptfra_standard_error");
     }

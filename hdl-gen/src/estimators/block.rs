@@ -1,4 +1,4 @@
-//! What every estimator tells the rest of the generator, and what it is given.
+//! The interface of an estimator: its configuration, its inputs and outputs, its block.
 
 use golden::design::Design;
 use golden::products::ByPq;
@@ -16,7 +16,7 @@ pub const WEIGHT_BITS: u32 = SHORT_BITS;
 
 /// What an estimator's constants are made from.
 #[derive(Clone, Copy, Debug)]
-pub struct Given<'a> {
+pub struct Config<'a> {
     /// The checked design.
     pub design: &'a Design,
     /// Elements of a vector as the lanes see it: taxels, or quads of the folded grid.
@@ -31,7 +31,7 @@ pub struct Given<'a> {
 
 /// What an estimator sees of a frame, in steps of the plan's formats.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen<'a> {
+pub struct Inputs<'a> {
     /// The sensor.
     pub sensor: &'a Sensor,
     /// Stress of each taxel.
@@ -70,7 +70,7 @@ impl Contact {
 
 /// What an estimator finds of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Found {
+pub struct Estimate {
     /// Friction components, [`crate::plan::format::FRICTION_FRACTION`] fraction bits.
     pub friction: [i64; 2],
     /// Nothing tells the direction.
@@ -115,7 +115,7 @@ pub struct Metadata {
 }
 
 /// An estimator as the rest of the generator knows it. Latencies are counts of registers in the emitted modules.
-pub trait Slot {
+pub trait EstimatorBlock {
     /// The cells of its search.
     fn cells(&self, sensor: &Sensor) -> Cells;
 
@@ -171,5 +171,5 @@ pub trait Slot {
     fn kernel_advice(&self, design: &Design, indent: &str) -> String;
 
     /// Its steps in integers, bit for bit those of the hardware.
-    fn find(&self, seen: &Seen) -> Found;
+    fn find(&self, inputs: &Inputs) -> Estimate;
 }

@@ -1,18 +1,18 @@
 //! The estimators of friction: what finds `mu_x` and `mu_y` from the sums and stresses of a frame.
 //!
-//! An estimator is a slot: its constants and formats, its steps in integers, its latencies, memories, multipliers and
-//! modules stand in a folder of its own, and the rest of the generator asks [`Slot`]. A new one is a folder, a line in
-//! each function of [`EstimatorPlan`], and its modules in the list of `emit::rtl`.
+//! An estimator is a block: its constants and formats, its steps in integers, its latencies, memories, multipliers and
+//! modules stand in a folder of its own, and the rest of the generator asks [`EstimatorBlock`]. A new one is a folder, a
+//! line in each function of [`EstimatorPlan`], and its modules in the list of `emit::rtl`.
 
+mod block;
 pub mod joint;
 pub mod line;
-mod slot;
 
 use golden::design::{Design, Estimator, PlanKind};
 
+pub use block::{Cells, Config, Contact, Estimate, EstimatorBlock, Inputs, Metadata, WEIGHT_BITS};
 use joint::JointPlan;
 use line::LinePlan;
-pub use slot::{Cells, Contact, Found, Given, Metadata, Seen, Slot, WEIGHT_BITS};
 
 /// The estimator of a design, with its constants.
 #[derive(Clone, Debug)]
@@ -25,15 +25,15 @@ pub enum EstimatorPlan {
 
 impl EstimatorPlan {
     /// The estimator that the design names.
-    pub fn new(given: &Given) -> Self {
-        match given.design.algorithm.estimator {
-            Estimator::Line => Self::Line(LinePlan::new(given)),
-            Estimator::Joint => Self::Joint(Box::new(JointPlan::new(given))),
+    pub fn new(config: &Config) -> Self {
+        match config.design.algorithm.estimator {
+            Estimator::Line => Self::Line(LinePlan::new(config)),
+            Estimator::Joint => Self::Joint(Box::new(JointPlan::new(config))),
         }
     }
 
     /// What the rest of the generator knows of it.
-    pub fn slot(&self) -> &dyn Slot {
+    pub fn block(&self) -> &dyn EstimatorBlock {
         match self {
             Self::Line(line) => line,
             Self::Joint(joint) => joint.as_ref(),

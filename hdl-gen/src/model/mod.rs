@@ -17,7 +17,7 @@ use golden::design::Tension;
 use golden::products::{ByPq, Frame, Scalar};
 
 use crate::cores::{fixed_to_float, float_to_fixed};
-use crate::estimators::{Contact, Seen};
+use crate::estimators::{Contact, Inputs};
 use crate::plan::calibration::{Bank, Reading};
 use crate::plan::dead::{DeadPlan, GUESSED_SHARE};
 use crate::plan::format::FRICTION_FRACTION;
@@ -300,17 +300,17 @@ fn scalars(
     let below = plan.formats.u.bits - plan.formats.u.narrowed().bits;
     let upper = u.each_ref().map(|of_q| of_q.iter().map(|value| value >> below).collect());
     let contact = Contact::new(stress, sensor.columns);
-    let seen = Seen { sensor, stress, contact, noise_floor, sums, u: &upper };
-    let found = plan.estimator.slot().find(&seen);
-    let summary = Summary::new(sums, found.friction);
+    let inputs = Inputs { sensor, stress, contact, noise_floor, sums, u: &upper };
+    let estimate = plan.estimator.block().find(&inputs);
+    let summary = Summary::new(sums, estimate.friction);
 
     let mut status = counter;
-    if found.unknown {
+    if estimate.unknown {
         status |= DIRECTION_UNKNOWN;
-    } else if found.at_bound {
+    } else if estimate.at_bound {
         status |= AT_BOUND;
     }
-    if saturated || found.saturated {
+    if saturated || estimate.saturated {
         status |= SATURATED;
     }
     let friction = FRICTION_FRACTION as i32;
@@ -330,7 +330,7 @@ fn scalars(
     let mut is_uncertain = plan.thresholds.thin;
     if let Some(of) = &plan.thresholds.error {
         // Without a direction the error is as much as presses.
-        let log = if found.unknown { 0 } else { of.log(&contact) };
+        let log = if estimate.unknown { 0 } else { of.log(&contact) };
         let (error, exponent) = summary.standard_error(log);
         put(words::STANDARD_ERROR, &[error], plan.formats.g.lsb - friction + exponent);
         is_uncertain |= log > of.limit;

@@ -25,7 +25,7 @@ use super::vector_formats::{Formats, arms};
 use super::{Condition, Nnz, Plan, Thresholds, channels, elements};
 use crate::blocks;
 use crate::cores::{DspBlock, LONG_BITS, Multiplier};
-use crate::estimators::{EstimatorPlan, Given};
+use crate::estimators::{Config, EstimatorPlan};
 use crate::timing::{Timeline, control};
 
 /// Words that do not fit one multiplier a lane have hardware where two make one product.
@@ -53,7 +53,7 @@ pub(super) fn check_widths(design: &Design) -> Result<(), PlanError> {
 }
 
 /// What does not depend on the number of lanes.
-pub(super) struct Work {
+pub(super) struct SharedPlan {
     condition: Condition,
     nnz: Nnz,
     matrices: Vec<QuantisedMatrix>,
@@ -65,7 +65,7 @@ pub(super) struct Work {
     thresholds: Thresholds,
 }
 
-impl Work {
+impl SharedPlan {
     pub(super) fn new(design: &Design) -> Result<Self, PlanError> {
         let hardware = &design.hardware;
         let matrices = Matrices::of(design)?;
@@ -86,14 +86,14 @@ impl Work {
         Ok(Self { condition, nnz, matrices: stored, products, formats, counts, calibration, dead, thresholds })
     }
 
-    /// Lays the work out on the lanes of `design`, which differs from the one it is of in nothing else.
+    /// Lays the plan out on the lanes of `design`, which differs from the one it is of in nothing else.
     pub(super) fn on_lanes(&self, design: &Design) -> Plan {
         let hardware = &design.hardware;
         let (elements, channels) = (elements(design), channels(design));
         let schedule =
             Schedule::new(&self.products, &self.matrices, hardware.lanes / channels, hardware.lanes > MANY_LANES);
         let Formats { stress, u, .. } = self.formats;
-        let estimator = EstimatorPlan::new(&Given { design, elements, channels, stress, u: u.narrowed() });
+        let estimator = EstimatorPlan::new(&Config { design, elements, channels, stress, u: u.narrowed() });
         let mut plan = Plan {
             design: design.clone(),
             condition: self.condition,

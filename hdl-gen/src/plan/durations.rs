@@ -13,7 +13,7 @@ use crate::timing::latency::{self, TAKE_TO_BUS};
 
 /// Of a plan, of which everything but the predicted times is there.
 pub(super) fn durations(plan: &Plan) -> Durations {
-    let (schedule, estimator) = (&plan.schedule, plan.estimator.slot());
+    let (schedule, estimator) = (&plan.schedule, plan.estimator.block());
     let (field, folded) = (plan.has_field(), plan.channels() > 1);
     let is_sum = |slot: &&WriteBackSlot| {
         let product = &plan.products[slot.product as usize];

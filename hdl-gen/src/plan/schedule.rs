@@ -88,9 +88,10 @@ impl Schedule {
                 let preload = product.preload.as_ref().map(|preload| &matrices[preload.matrix]);
                 let new = |matrix: usize| !std::mem::replace(&mut stored[matrix], true);
                 let index = (first + offset) as u32;
-                let work = Work { product, index, preload, main, start: next_start.max(addend(product, &made)) };
+                let distribution =
+                    Distribution { product, index, preload, main, start: next_start.max(addend(product, &made)) };
                 let first_slot = partitioner.slots.len();
-                let (Timing { start, length, last_slot }, macs) = work.partition(&mut partitioner, &made, new);
+                let (Timing { start, length, last_slot }, macs) = distribution.partition(&mut partitioner, &made, new);
                 windows.push(Window { start, length, wait: start - next_start, macs });
                 made.push(Made::new(product, main.rows.len(), &partitioner.slots[first_slot..], last_slot));
                 next_start = start + length;
@@ -139,7 +140,7 @@ impl Schedule {
 }
 
 /// A product to be distributed over the PEs.
-struct Work<'a> {
+struct Distribution<'a> {
     product: &'a Product,
     index: u32,
     preload: Option<&'a QuantisedMatrix>,
@@ -147,7 +148,7 @@ struct Work<'a> {
     start: u64,
 }
 
-impl<'a> Work<'a> {
+impl<'a> Distribution<'a> {
     fn stream(&self, mut rows: Vec<(u32, &'a [Entry])>, store: bool, start: u64) -> Stream<'a> {
         let Self { product, index, .. } = *self;
         product.relabel(&mut rows);

@@ -3,7 +3,7 @@
 use golden::design::{Design, Estimator, MAX_LANES, Optimise, Outputs, PlanKind, STREAM_BITS};
 use golden::parity::CLASSES;
 
-use super::build::{Work, check_widths};
+use super::build::{SharedPlan, check_widths};
 use super::{Plan, PlanError};
 use crate::estimators;
 
@@ -30,21 +30,21 @@ impl Plan {
     }
 }
 
-/// The work of a design whose estimator and widths have hardware.
-fn checked(design: &Design) -> Result<Work, PlanError> {
+/// What all plans of a design share, if its estimator and widths have hardware.
+fn checked(design: &Design) -> Result<SharedPlan, PlanError> {
     if !estimators::has_hardware(design) {
         return Err(PlanError::JointEstimator);
     }
     check_widths(design)?;
-    Work::new(design)
+    SharedPlan::new(design)
 }
 
-fn meet(work: &Work, design: &Design, target_us: f64) -> Result<Plan, PlanError> {
+fn meet(shared: &SharedPlan, design: &Design, target_us: f64) -> Result<Plan, PlanError> {
     let mut settled = design.clone();
     let mut fastest: Option<Plan> = None;
     for lanes in lanes() {
         settled.hardware.lanes = lanes;
-        let plan = work.on_lanes(&settled);
+        let plan = shared.on_lanes(&settled);
         if is_met(&plan, target_us) {
             return Ok(plan);
         }
@@ -79,11 +79,11 @@ fn is_met(plan: &Plan, target_us: f64) -> bool {
 fn remedies(design: &Design, target_us: f64) -> String {
     let meets = |change: &Change| {
         let mut changed = change.apply(design);
-        let work = Work::new(&changed);
-        work.is_ok_and(|work| {
+        let shared = SharedPlan::new(&changed);
+        shared.is_ok_and(|shared| {
             lanes().rev().any(|lanes| {
                 changed.hardware.lanes = lanes;
-                is_met(&work.on_lanes(&changed), target_us)
+                is_met(&shared.on_lanes(&changed), target_us)
             })
         })
     };

@@ -222,7 +222,7 @@ fn inspect_says_how_many_points_are_evaluated_at_a_time() {
     let said = |keys: &str| {
         let more = format!("[algorithm]\nestimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]\n{keys}");
         let plan = plan(&design_text("pad", [10, 10], [4.0, 4.0], 3.0, &more));
-        let report = plan.estimator.slot().report(&plan.design);
+        let report = plan.estimator.block().report(&plan.design);
         assert!(report.lines().all(|line| line.chars().count() <= 110), "{report}");
         report
             .lines()

@@ -15,7 +15,7 @@ use golden::sensor::Sensor;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{Cells, Found, Given, Metadata, Seen, Slot, WEIGHT_BITS};
+use super::{Cells, Config, Estimate, EstimatorBlock, Inputs, Metadata, WEIGHT_BITS};
 use crate::cores::{LONG_BITS, SHORT_BITS};
 use crate::parameters::Parameters;
 use crate::plan::format::{FRICTION_FRACTION, Factors, pow2};
@@ -56,19 +56,19 @@ pub struct JointPlan {
 
 impl JointPlan {
     /// The formats of a design.
-    pub fn new(given: &Given) -> Self {
-        let constants = &given.design.algorithm.joint;
+    pub fn new(config: &Config) -> Self {
+        let constants = &config.design.algorithm.joint;
         let [c1, c3] = constants.friction_correction;
-        let finer = given.stress.lsb - given.u.lsb;
+        let finer = config.stress.lsb - config.u.lsb;
         let fixed = |value: f64, fraction: u32| (value * pow2(fraction as i32)).round() as i64;
         Self {
-            search: SearchPlan::new(finer, given.design),
+            search: SearchPlan::new(finer, config.design),
             linear: fixed(c1, LINEAR_FRACTION),
             cubic: fixed(c3, CUBIC_FRACTION),
             network: constants
                 .correction
                 .as_ref()
-                .map(|correction| NetworkPlan::new(correction, -finer, given.design.hardware.lanes)),
+                .map(|correction| NetworkPlan::new(correction, -finer, config.design.hardware.lanes)),
         }
     }
 }
@@ -76,7 +76,7 @@ impl JointPlan {
 /// Sums of the hidden units: both components.
 const READOUTS: usize = 2;
 
-impl Slot for JointPlan {
+impl EstimatorBlock for JointPlan {
     fn cells(&self, sensor: &Sensor) -> Cells {
         Cells { cells: self.search.parallel, elements: sensor.taxels() }
     }
@@ -203,7 +203,7 @@ impl Slot for JointPlan {
         report::kernel_advice(design, indent)
     }
 
-    fn find(&self, seen: &Seen) -> Found {
-        model::friction(self, seen)
+    fn find(&self, inputs: &Inputs) -> Estimate {
+        model::friction(self, inputs)
     }
 }

@@ -7,7 +7,7 @@ use golden::estimators::joint::{Correction, EXTRA_INPUTS, STRESS_SCALE, WEIGHT_F
 use golden::parity::{CLASSES, sign};
 use serde::Serialize;
 
-use crate::estimators::slot::WEIGHT_BITS;
+use crate::estimators::block::WEIGHT_BITS;
 use crate::plan::format::{FRICTION_FRACTION, largest, pow2, round_shift};
 
 /// Fraction bits of an input.

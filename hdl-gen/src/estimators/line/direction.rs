@@ -1,6 +1,6 @@
 //! `CeAn` of the line search in integers: centroids of compression and tension, direction of the push (Eq. 24, as a vector).
 
-use super::super::Seen;
+use super::super::Inputs;
 use super::{CENTROID_FRACTION, PITCH_FRACTION};
 use crate::cores::divider;
 use crate::plan::format::round_shift;
@@ -15,16 +15,16 @@ pub struct Direction {
 }
 
 impl Direction {
-    /// Of the frame `seen`; `pitch` is that of [`super::LinePlan`].
-    pub fn new(seen: &Seen, pitch: [i64; 2]) -> Self {
-        let columns = seen.sensor.columns;
-        let compression = Moments::of(seen.stress, columns, |value| (value < 0).then_some(-value));
-        let tension = Moments::of(seen.stress, columns, |value| (value >= 0).then_some(value));
+    /// Of the frame `inputs`; `pitch` is that of [`super::LinePlan`].
+    pub fn new(inputs: &Inputs, pitch: [i64; 2]) -> Self {
+        let columns = inputs.sensor.columns;
+        let compression = Moments::of(inputs.stress, columns, |value| (value < 0).then_some(-value));
+        let tension = Moments::of(inputs.stress, columns, |value| (value >= 0).then_some(value));
         let push = std::array::from_fn(|axis| {
             let difference = compression.centroid(axis) - tension.centroid(axis);
             round_shift(difference * pitch[axis], PITCH_FRACTION)
         });
-        let beyond = |sign: i64| seen.stress.iter().any(|&value| sign * value > seen.noise_floor);
+        let beyond = |sign: i64| inputs.stress.iter().any(|&value| sign * value > inputs.noise_floor);
         Self { push, unknown: !beyond(1) || !beyond(-1) }
     }
 }

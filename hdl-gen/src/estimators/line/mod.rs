@@ -10,7 +10,7 @@ use golden::design::Design;
 use golden::sensor::Sensor;
 use serde_json::json;
 
-use super::{Cells, Found, Given, Metadata, Seen, Slot};
+use super::{Cells, Config, Estimate, EstimatorBlock, Inputs, Metadata};
 use crate::parameters::Parameters;
 use crate::plan::format::{FRICTION_FRACTION, Factors, MOST_CELLS};
 use crate::plan::resources::BlockCost;
@@ -51,27 +51,27 @@ pub struct LinePlan {
 
 impl LinePlan {
     /// As many cells as lanes, at most [`MOST_CELLS`], with a power of two of taxels each.
-    pub fn new(given: &Given) -> Self {
-        let groups = (given.design.hardware.lanes.min(MOST_CELLS) / given.channels).max(1);
-        let per_cell = given.elements.div_ceil(groups).next_power_of_two();
-        let hinge_lsb = given.u.lsb - FRICTION_FRACTION as i32 + HINGE_DROP as i32;
-        let pitch_mm = given.design.sensor.pitch_mm;
+    pub fn new(config: &Config) -> Self {
+        let groups = (config.design.hardware.lanes.min(MOST_CELLS) / config.channels).max(1);
+        let per_cell = config.elements.div_ceil(groups).next_power_of_two();
+        let hinge_lsb = config.u.lsb - FRICTION_FRACTION as i32 + HINGE_DROP as i32;
+        let pitch_mm = config.design.sensor.pitch_mm;
         let larger = pitch_mm[0].max(pitch_mm[1]);
         let one = f64::from(1_u32 << PITCH_FRACTION);
         Self {
-            cells: Cells::new(given.elements, given.channels, per_cell),
-            points: if given.design.hardware.lanes > ONE_POINT_LANES && per_cell <= THREE_POINTS_ELEMENTS {
+            cells: Cells::new(config.elements, config.channels, per_cell),
+            points: if config.design.hardware.lanes > ONE_POINT_LANES && per_cell <= THREE_POINTS_ELEMENTS {
                 3
             } else {
                 1
             },
-            level_shift: given.stress.lsb - LEVEL_SHIFT - hinge_lsb,
+            level_shift: config.stress.lsb - LEVEL_SHIFT - hinge_lsb,
             pitch: pitch_mm.map(|pitch| (pitch / larger * one).round() as i64),
         }
     }
 }
 
-impl Slot for LinePlan {
+impl EstimatorBlock for LinePlan {
     fn cells(&self, _sensor: &Sensor) -> Cells {
         self.cells
     }
@@ -142,7 +142,7 @@ impl Slot for LinePlan {
         report::kernel_advice(design, indent)
     }
 
-    fn find(&self, seen: &Seen) -> Found {
-        search::friction(self, seen)
+    fn find(&self, inputs: &Inputs) -> Estimate {
+        search::friction(self, inputs)
     }
 }

@@ -2,7 +2,7 @@
 
 use golden::products::ByPq;
 
-use super::super::{Found, Seen};
+use super::super::{Estimate, Inputs};
 use super::direction::Direction;
 use super::{HINGE_DROP, LINE_FRACTION, LINE_SUM_BITS, LinePlan, SEARCH_STEPS};
 use crate::cores::{LONG_BITS, divider};
@@ -52,9 +52,9 @@ fn ratio(numerator: i64, denominator: i64) -> Option<i64> {
 }
 
 /// Finds the friction on the line of the push.
-pub fn friction(plan: &LinePlan, seen: &Seen) -> Found {
-    let line = Line::new(seen.sums, &Direction::new(seen, plan.pitch));
-    let Optimum { t, at_bound, saturated } = search(&Hinges::new(&line, seen.u), seen.contact.stress_sum, plan);
+pub fn friction(plan: &LinePlan, inputs: &Inputs) -> Estimate {
+    let line = Line::new(inputs.sums, &Direction::new(inputs, plan.pitch));
+    let Optimum { t, at_bound, saturated } = search(&Hinges::new(&line, inputs.u), inputs.contact.stress_sum, plan);
     let exact = round_shift((line.c0 << FRICTION_FRACTION) + line.c1 * t, LINE_FRACTION);
     let dependent = exact.clamp(-largest(FRICTION_BITS) - 1, largest(FRICTION_BITS));
     let friction = match (line.unknown, line.x_is_free) {
@@ -62,7 +62,7 @@ pub fn friction(plan: &LinePlan, seen: &Seen) -> Found {
         (false, true) => [t, dependent],
         (false, false) => [dependent, t],
     };
-    Found { friction, unknown: line.unknown, at_bound: at_bound || dependent != exact, saturated }
+    Estimate { friction, unknown: line.unknown, at_bound: at_bound || dependent != exact, saturated }
 }
 
 /// Where the search ended.

@@ -57,7 +57,7 @@ fn more_lanes_are_never_slower_on_the_papers_sensor() {
             let timeline = &plan.timeline;
             assert!(timeline.latency_cycles < before && timeline.interval_cycles <= timeline.latency_cycles);
             before = timeline.latency_cycles;
-            let Cells { cells, elements } = plan.estimator.slot().cells(&plan.design.sensor);
+            let Cells { cells, elements } = plan.estimator.block().cells(&plan.design.sensor);
             let (groups, of_group) = (cells / plan.channels(), plan.elements());
             assert!(groups * elements >= of_group && (groups - 1) * elements < of_group);
         }

@@ -127,7 +127,7 @@ fn counting_is_over_before_the_search() {
         let [plain, counted] = [&plain, &design].map(planned);
         assert_eq!(plain.timeline, counted.timeline, "{}", design.name);
         // Of the grid search on any other sensor, too; the line search has as many cells as the sensor at hand needs.
-        let slot = counted.estimator.slot();
+        let block = counted.estimator.block();
         let own = &counted.design.sensor;
         let mut sensors = vec![own.clone()];
         if design.algorithm.estimator == Estimator::Joint {
@@ -135,7 +135,7 @@ fn counting_is_over_before_the_search() {
             sensors.extend(grids.map(|(columns, rows)| Sensor { columns, rows, ..own.clone() }));
         }
         for sensor in sensors {
-            let (count, search) = (latency::count_contacts(&sensor), slot.stages(&sensor)[0].cycles);
+            let (count, search) = (latency::count_contacts(&sensor), block.stages(&sensor)[0].cycles);
             assert!(count < search, "{}, {sensor}: {count} cycles to count, {search} to search", design.name);
         }
     }

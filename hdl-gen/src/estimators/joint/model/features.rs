@@ -2,7 +2,7 @@
 
 use golden::parity::CLASSES;
 
-use super::super::super::Seen;
+use super::super::super::Inputs;
 use super::super::{CENTRE_HALF, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS};
 use crate::cores::{SHORT_BITS, divider};
 use crate::plan::format::{FRICTION_FRACTION, SUM_BITS, largest, round_shift};
@@ -19,9 +19,9 @@ pub struct Features {
 }
 
 /// Computes the features at the friction `mu`.
-pub fn take(network: &NetworkPlan, seen: &Seen, mu: [i64; 2]) -> Features {
-    let (columns, rows) = (seen.sensor.columns, seen.sensor.rows);
-    let (u, stress_sum) = (seen.u, seen.contact.stress_sum);
+pub fn take(network: &NetworkPlan, inputs: &Inputs, mu: [i64; 2]) -> Features {
+    let (columns, rows) = (inputs.sensor.columns, inputs.sensor.rows);
+    let (u, stress_sum) = (inputs.u, inputs.contact.stress_sum);
     let sum_bits = 64 - stress_sum.leading_zeros();
     let reciprocal = reciprocal(stress_sum, sum_bits);
     let mut saturated = false;

@@ -4,31 +4,31 @@ mod features;
 mod network;
 mod search;
 
-use super::super::{Found, Seen};
+use super::super::{Estimate, Inputs};
 use super::{CUBIC_FRACTION, FACTOR_FRACTION, JointPlan, LINEAR_FRACTION};
 use crate::plan::format::{FRICTION_BITS, FRICTION_FRACTION, largest, round_shift};
 
 /// Finds the friction of a frame.
-pub fn friction(joint: &JointPlan, seen: &Seen) -> Found {
-    let centroid = search::search(&joint.search, seen);
-    let mut found = Found { unknown: centroid.unknown, at_bound: centroid.on_border, ..Found::default() };
+pub fn friction(joint: &JointPlan, inputs: &Inputs) -> Estimate {
+    let centroid = search::search(&joint.search, inputs);
+    let mut estimate = Estimate { unknown: centroid.unknown, at_bound: centroid.on_border, ..Estimate::default() };
     let mut correction = [0; 2];
     if let Some(network) = &joint.network {
-        let features = features::take(network, seen, centroid.mu);
-        found.saturated = features.saturated;
+        let features = features::take(network, inputs, centroid.mu);
+        estimate.saturated = features.saturated;
         correction = network::correction(network, &features.inputs);
     }
-    found.saturated = (found.saturated || centroid.saturated) && !centroid.unknown;
+    estimate.saturated = (estimate.saturated || centroid.saturated) && !centroid.unknown;
     let exact = scaled(joint, centroid.mu);
     if centroid.unknown {
-        return found;
+        return estimate;
     }
-    for (axis, component) in found.friction.iter_mut().enumerate() {
+    for (axis, component) in estimate.friction.iter_mut().enumerate() {
         let sum = exact[axis] + correction[axis];
         *component = sum.clamp(-largest(FRICTION_BITS) - 1, largest(FRICTION_BITS));
-        found.at_bound |= *component != sum;
+        estimate.at_bound |= *component != sum;
     }
-    found
+    estimate
 }
 
 /// `c1 mu + c3 mu |mu|^2`.

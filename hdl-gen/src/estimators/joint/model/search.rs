@@ -1,6 +1,6 @@
 //! The grid search in integers: the centroid of the level set of Condition 1.
 
-use super::super::super::Seen;
+use super::super::super::Inputs;
 use super::super::SearchPlan;
 use super::super::search::{GRID, Values, WEIGHT_DROP};
 use crate::cores::divider;
@@ -19,8 +19,8 @@ pub struct Centroid {
 }
 
 /// Finds the centroid of the points below the level, each weighing as its depth squared.
-pub fn search(plan: &SearchPlan, seen: &Seen) -> Centroid {
-    let Values { values, margin, clipped } = plan.values(seen.u, seen.contact);
+pub fn search(plan: &SearchPlan, inputs: &Inputs) -> Centroid {
+    let Values { values, margin, clipped } = plan.values(inputs.u, inputs.contact);
     let (side, reach) = (plan.side, i64::from(GRID.reach));
     let place = |index: usize| [index % side, index / side].map(|at| at as i64 - reach);
     let least = |border: bool| {
