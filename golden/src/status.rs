@@ -18,7 +18,7 @@ impl Status {
     /// A NaN or an infinity in the frame: all results are zero.
     pub const NOT_FINITE: Self = Self(1 << 4);
     /// Too few or too many values in the frame (hardware only): all results are zero.
-    pub const FRAME_LENGTH: Self = Self(1 << 5);
+    pub const BAD_LENGTH: Self = Self(1 << 5);
     /// A dead taxel's reading was replaced by what its neighbours say.
     pub const REPLACED: Self = Self(1 << 8);
     /// More than an eighth of the stress is in replaced taxels: see [`crate::dead_taxels::GUESSED`].
@@ -44,7 +44,7 @@ impl Status {
         (Self::AT_BOUND, "optimum at the bound"),
         (Self::SATURATED, "saturated"),
         (Self::NOT_FINITE, "NaN or infinity in"),
-        (Self::FRAME_LENGTH, "frame length wrong"),
+        (Self::BAD_LENGTH, "frame length wrong"),
         (Self::LOW_CONFIDENCE, "low confidence"),
         (Self::SEVERAL_CONTACTS, "more than one contact"),
         (Self::REPLACED, "dead taxel replaced"),

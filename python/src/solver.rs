@@ -94,7 +94,7 @@ fn slips_of(before: &Bound<'_, PyAny>) -> PyResult<Slips> {
     }
     let status: Vec<u32> = before.getattr("status")?.call_method1("tolist", ())?.extract()?;
     // A frame that is not finite says nothing of slip: the one before it does.
-    let unread = Status::NOT_FINITE.0 | Status::FRAME_LENGTH.0;
+    let unread = Status::NOT_FINITE.0 | Status::BAD_LENGTH.0;
     let Some(last) = status.iter().rposition(|status| status & unread == 0) else { return Ok(Slips::default()) };
     let status = status[last];
     let records = before.getattr("records")?;

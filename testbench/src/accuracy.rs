@@ -50,7 +50,7 @@ pub struct StatusCounts {
     /// Bit 4.
     pub not_finite: usize,
     /// Bit 5.
-    pub frame_length: usize,
+    pub bad_length: usize,
     /// Bit 6.
     #[serde(default)]
     pub low_confidence: usize,
@@ -87,7 +87,7 @@ impl StatusCounts {
             at_bound: with(Status::AT_BOUND),
             saturated: with(Status::SATURATED),
             not_finite: with(Status::NOT_FINITE),
-            frame_length: with(Status::FRAME_LENGTH),
+            bad_length: with(Status::BAD_LENGTH),
             low_confidence: with(Status::LOW_CONFIDENCE),
             several_contacts: with(Status::SEVERAL_CONTACTS),
             replaced: with(Status::REPLACED),
@@ -105,7 +105,7 @@ impl StatusCounts {
             (Status::AT_BOUND, self.at_bound),
             (Status::SATURATED, self.saturated),
             (Status::NOT_FINITE, self.not_finite),
-            (Status::FRAME_LENGTH, self.frame_length),
+            (Status::BAD_LENGTH, self.bad_length),
             (Status::LOW_CONFIDENCE, self.low_confidence),
             (Status::SEVERAL_CONTACTS, self.several_contacts),
             (Status::REPLACED, self.replaced),

@@ -13,7 +13,7 @@ pub const SATURATED: u32 = Status::SATURATED.0;
 /// NaN or infinity in.
 pub const NOT_FINITE: u32 = Status::NOT_FINITE.0;
 /// Early or late TLAST.
-pub const BAD_LENGTH: u32 = Status::FRAME_LENGTH.0;
+pub const BAD_LENGTH: u32 = Status::BAD_LENGTH.0;
 /// The error is above the design's limit.
 pub const LOW_CONFIDENCE: u32 = Status::LOW_CONFIDENCE.0;
 /// More contacts than the one that is solved.

@@ -5,6 +5,7 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 use golden::design::Curve;
+use golden::status::Status;
 use hdl_gen::emit::emit;
 use hdl_gen::plan::Plan;
 use serde::Deserialize;
@@ -248,6 +249,25 @@ fn addresses_are_the_same_everywhere() {
     let named = |name: &str| map.iter().any(|register| register.name == name);
     let names: Vec<&str> = source.split("pub const ").skip(1).filter_map(|line| line.split(": u32").next()).collect();
     assert!(names.len() > 20 && names.iter().all(|name| named(name)), "{names:?}");
+}
+
+/// Solver, page, register and C driver call a status bit the same.
+#[test]
+fn status_bits_have_one_name() {
+    let plan = &widest().plan;
+    let map = emit(plan).expect("emitted").remove(&format!("control/{}.rdl", plan.design.name)).expect("a map");
+    let map = String::from_utf8(map).expect("text");
+    let [page, driver] = ["docs/reference/status-bits.md", "drivers/c/sptfra_result.c"]
+        .map(|path| fs::read_to_string(workspace(path)).expect("readable"));
+    for (bit, name) in Status::NAMED {
+        let number = bit.0.trailing_zeros();
+        let is_field = |line: &&str| line.contains(&format!("[{number}:{number}]"));
+        let mut fields = map.split("LAST_STATUS").next().expect("fields").lines().rev().filter(is_field);
+        let field = fields.next().unwrap_or_default().to_lowercase();
+        assert!(field.contains(&format!("name = \"{}\"", name.to_lowercase())), "{name}: {field}");
+        assert!(page.contains(&format!("| {number} | {name} |")), "{name} in docs/reference/status-bits.md");
+        assert!(driver.contains(&format!("\"{name}\"")), "{name} in the C driver");
+    }
 }
 
 /// The C driver's header is `PeakRDL`'s, but for the reset values, which are each design's own.
