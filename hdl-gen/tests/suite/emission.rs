@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 
 use golden::design::{Correction, Design, WEIGHTS_FILE};
+use hdl_gen::cores::Multiplier;
+use hdl_gen::emit::rtl::library;
 use hdl_gen::emit::{FileMap, emit};
 use hdl_gen::plan::Plan;
 use serde_json::Value;
@@ -175,4 +177,16 @@ fn a_generated_design_has_its_weights_beside_it_and_in_its_hash() {
         metadata["design_hash"].as_str().unwrap().to_owned()
     };
     assert_ne!(hash(&files), hash(&emitted(7)));
+}
+
+/// A message of the simulation names its instance: modules stand in a core several times.
+#[test]
+fn messages_of_modules_carry_the_path_of_their_instance() {
+    let modules = library(Multiplier::Whole);
+    let messages = modules.iter().flat_map(|(module, text)| text.lines().map(move |line| (module, line)));
+    let messages: Vec<_> = messages.filter(|(_, line)| line.contains("display(")).collect();
+    assert!(messages.len() > 10, "{messages:?}");
+    for (module, line) in messages {
+        assert!(line.contains("$fdisplay(32'h80000002, \"%m: "), "{module}: {line}");
+    }
 }
