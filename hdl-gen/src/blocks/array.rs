@@ -73,7 +73,7 @@ fn vectors(plan: &Plan) -> usize {
     plan.products.iter().map(|product| product.operands.len()).max().unwrap_or(1)
 }
 
-/// Quads along a side of the grid, if some products are mirrored at its diagonal.
+/// Orbits along a side of the grid, if some products are mirrored at its diagonal.
 fn mirror_side(plan: &Plan) -> usize {
     plan.products.iter().find_map(|product| product.mirrored).unwrap_or(0)
 }

@@ -118,7 +118,7 @@ pub fn arrival(plan: &Plan) -> Arrival {
     } else {
         (0..plan.taxels()).fold(0, |before, taxel| (there(taxel) + 1).max(before + 1)) + latency::TAXEL_TO_CEAN
     };
-    // Each element when its last taxel is there, quads from the middle rows on. Where frames are scaled, when the scale is;
+    // Each element when its last taxel is there, orbits from the middle rows on. Where frames are scaled, when the scale is;
     // where they are averaged, when it is decided whether the average restarts.
     let (columns, rows) = if plan.channels() > 1 { (sensor.columns / 2, sensor.rows / 2) } else { (0, 0) };
     let last_taxels = (rows..sensor.rows).flat_map(|y| (columns..sensor.columns).map(move |x| y * sensor.columns + x));

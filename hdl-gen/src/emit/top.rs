@@ -92,8 +92,6 @@ struct View {
     /// Status bits with their meanings, two in a line.
     status: Vec<String>,
 
-    /// What an element of a vector is, how many there are, and how many values come at a time.
-    element: &'static str,
     elements: usize,
     channels: usize,
     programs: usize,
@@ -185,7 +183,6 @@ impl View {
             torque_lsb: plan.formats.torque_lsb,
             status: status_lines(),
 
-            element: if folded { "quad" } else { "taxel" },
             elements: plan.elements(),
             channels: plan.channels(),
             programs: plan.schedule.programs.len(),

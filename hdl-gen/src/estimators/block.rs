@@ -19,9 +19,9 @@ pub const WEIGHT_BITS: u32 = SHORT_BITS;
 pub struct Config<'a> {
     /// The checked design.
     pub design: &'a Design,
-    /// Elements of a vector as the lanes see it: taxels, or quads of the folded grid.
+    /// Elements of a vector as the lanes see it: taxels, or orbits of the folded grid.
     pub elements: usize,
-    /// Values of an element: 1, or the members of a quad, which arrive at a time.
+    /// Values of an element: 1, or the images of an orbit, which arrive at a time.
     pub channels: usize,
     /// Format of a taxel's stress.
     pub stress: Format,
@@ -91,7 +91,7 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// Of `per_cell` taxels each. Where `channels` taxels arrive at a time (the members of a quad, of which there are
+    /// Of `per_cell` taxels each. Where `channels` taxels arrive at a time (the images of an orbit, of which there are
     /// `elements`), they go to as many cells.
     pub fn new(elements: usize, channels: usize, per_cell: usize) -> Self {
         Self { cells: channels * elements.div_ceil(per_cell), elements: per_cell }

@@ -21,9 +21,9 @@ pub fn by_taxel(plan: &Plan) -> Scalar<Integer<'_>, 1> {
     Scalar::new(Integer { plan }, (0..plan.taxels()).map(|taxel| [taxel]).collect(), plan.taxels())
 }
 
-/// The reduced plan has four a quad.
-pub fn by_quad(plan: &Plan) -> Scalar<Integer<'_>, CLASSES> {
-    Scalar::new(Integer { plan }, plan.quads().all(), plan.taxels())
+/// The reduced plan has four an orbit.
+pub fn by_orbit(plan: &Plan) -> Scalar<Integer<'_>, CLASSES> {
+    Scalar::new(Integer { plan }, plan.orbits().all(), plan.taxels())
 }
 
 impl<const W: usize> Number<W> for Integer<'_> {
@@ -42,7 +42,7 @@ impl<const W: usize> Number<W> for Integer<'_> {
                     *sum += product(channel, value, matrix.dropped);
                 }
             }
-            *result = std::array::from_fn(|class| round_shift(sums[class ^ step.parity], shift));
+            *result = std::array::from_fn(|component| round_shift(sums[component ^ step.parity], shift));
         }
     }
 

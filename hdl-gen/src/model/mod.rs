@@ -173,7 +173,7 @@ impl<'plan> Model<'plan> {
         let scaled = Scaled::new(self.plan, stress);
         let (mut words, summary) = match self.plan.formats.folded {
             None => self.execute(&integer::by_taxel(self.plan), counter, &scaled, saturated),
-            Some(_) => self.execute(&integer::by_quad(self.plan), counter, &scaled, saturated),
+            Some(_) => self.execute(&integer::by_orbit(self.plan), counter, &scaled, saturated),
         };
         scaled.back(&mut words);
         let read = self.plan.design.input.tension == Tension::Read;

@@ -12,7 +12,7 @@ pub enum Place {
     StressBank,
 }
 
-/// The operand memories' contents, in slots of as many words as a vector has elements (taxels, or quads where vectors
+/// The operand memories' contents, in slots of as many words as a vector has elements (taxels, or orbits where vectors
 /// are folded).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OperandLayout {

@@ -13,7 +13,7 @@ pub const ANY_LSB: i32 = -900;
 const FEWEST_USEFUL_BITS: u32 = 6;
 
 /// A column and its coefficients, one a channel. The paper's plan has one channel; in the reduced plan the four channels
-/// are the parity classes of the operand.
+/// are the parity components of the operand.
 pub type Entry = (u32, [i32; CLASSES]);
 
 /// Rows of real coefficients, before they are quantised; the same shape as [`QuantisedMatrix::rows`].
@@ -106,11 +106,11 @@ impl QuantisedMatrix {
         Self { name: name.to_owned(), rows, lsb, row_sum, dropped: 0 }
     }
 
-    /// Its image at the diagonal of a grid of `side` by `side` quads.
+    /// Its image at the diagonal of a grid of `side` by `side` orbits.
     #[must_use]
     pub fn mirrored(&self, side: usize) -> Self {
         let entry = |&(column, channels): &Entry| {
-            (mirror(column as usize, side) as u32, std::array::from_fn(|class| channels[swapped(class)]))
+            (mirror(column as usize, side) as u32, std::array::from_fn(|component| channels[swapped(component)]))
         };
         let row = |row: usize| self.rows[mirror(row, side)].iter().map(entry).collect();
         Self { rows: (0..self.rows.len()).map(row).collect(), ..self.clone() }
@@ -161,14 +161,14 @@ impl QuantisedMatrix {
     /// Largest row sum of the magnitudes of the four-channel matrix's unfolded coefficients, times four: with it, a bound
     /// of the taxels' operands is one of the taxels' results.
     pub fn unfolded_row_sum(&self) -> i64 {
-        let mirrored = |channels: &[i32; CLASSES], member: usize| -> i64 {
-            let signed = channels.iter().enumerate().map(|(class, &value)| {
-                if golden::parity::sign(class, member) < 0.0 { -i64::from(value) } else { i64::from(value) }
+        let mirrored = |channels: &[i32; CLASSES], image: usize| -> i64 {
+            let signed = channels.iter().enumerate().map(|(component, &value)| {
+                if golden::parity::sign(component, image) < 0.0 { -i64::from(value) } else { i64::from(value) }
             });
             signed.sum::<i64>().abs()
         };
         let of_row = |row: &Vec<Entry>| -> i64 {
-            row.iter().map(|(_, channels)| (0..CLASSES).map(|member| mirrored(channels, member)).sum::<i64>()).sum()
+            row.iter().map(|(_, channels)| (0..CLASSES).map(|image| mirrored(channels, image)).sum::<i64>()).sum()
         };
         self.rows.iter().map(of_row).max().unwrap_or(0)
     }

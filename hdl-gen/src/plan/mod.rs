@@ -150,7 +150,7 @@ impl Plan {
         Factors::of(&self.design)
     }
 
-    /// Lanes of a PE: the parity classes of the reduced plan, else one.
+    /// Lanes of a PE: the parity components of the reduced plan, else one.
     pub fn channels(&self) -> usize {
         channels(&self.design)
     }
@@ -171,14 +171,14 @@ impl Plan {
         self.design.hardware.scaling == Scaling::PerFrame
     }
 
-    /// Elements of a vector as the lanes see it: taxels, or quads of the folded grid.
+    /// Elements of a vector as the lanes see it: taxels, or orbits of the folded grid.
     pub fn elements(&self) -> usize {
         elements(&self.design)
     }
 
-    /// The quads of the sensor's grid.
-    pub fn quads(&self) -> Quads {
-        quads(&self.design)
+    /// The orbits of the sensor's grid.
+    pub fn orbits(&self) -> Quads {
+        orbits(&self.design)
     }
 
     /// Number of taxels m.
@@ -224,13 +224,13 @@ fn channels(design: &Design) -> usize {
     }
 }
 
-fn quads(design: &Design) -> Quads {
+fn orbits(design: &Design) -> Quads {
     Quads::new(design.sensor.columns, design.sensor.rows)
 }
 
 fn elements(design: &Design) -> usize {
     match design.algorithm.plan {
         PlanKind::Paper => design.sensor.taxels(),
-        PlanKind::Reduced => quads(design).count(),
+        PlanKind::Reduced => orbits(design).count(),
     }
 }

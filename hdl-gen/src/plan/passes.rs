@@ -21,7 +21,7 @@ use golden::products::{Epilogue, ProductList, Step, Vector};
 use super::product::{Block, Preload, Product};
 use super::quantise::Quantised;
 
-/// Quads along a side up to which the diagonal mirror is worth a table.
+/// Orbits along a side up to which the diagonal mirror is worth a table.
 const MOST_MIRRORED_SIDE: usize = 16;
 
 /// The list of a design's plan.
@@ -43,7 +43,7 @@ fn mirrored_side(design: &Design) -> Option<usize> {
     let [x, y] = sensor.pitch_mm;
     let square = sensor.columns == sensor.rows && x.to_bits() == y.to_bits();
     let side = Quads::new(sensor.columns, sensor.rows).columns();
-    // F1 keeps another pattern on each side of the diagonal; and the mirror of many quads is a large table unless it
+    // F1 keeps another pattern on each side of the diagonal; and the mirror of many orbits is a large table unless it
     // is an exchange of bits.
     let kept = matches!(design.algorithm.filter, Filter::None);
     (square && kept && (side.is_power_of_two() || side <= MOST_MIRRORED_SIDE)).then_some(side)

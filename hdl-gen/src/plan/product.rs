@@ -90,7 +90,7 @@ pub fn sum_row(p: usize, q: usize) -> usize {
     if matches!(p, 3 | 4) { 4 + q } else { q }
 }
 
-/// The channel in which its row holds `G_pq`: the class of the operand on which the sum depends. `p` from 0.
+/// The channel in which its row holds `G_pq`: the component of the operand on which the sum depends. `p` from 0.
 pub fn sum_channel(p: usize, q: usize) -> usize {
     let of_p = [1, 2, 0, 2, 1, 3];
     let of_q = [0, 1, 2];
@@ -128,9 +128,11 @@ impl Product {
         round_shift(matrix.largest_sum(operand_bound) as i64, shift.min(62))
     }
 
-    /// For each class of the result, the channel that computes it.
+    /// For each component of the result, the channel that computes it.
     pub fn channels(&self) -> [usize; CLASSES] {
-        std::array::from_fn(|class| if self.mirrored.is_some() { swapped(class) } else { class } ^ self.parity)
+        std::array::from_fn(
+            |component| if self.mirrored.is_some() { swapped(component) } else { component } ^ self.parity,
+        )
     }
 
     /// Gives the rows of the stored matrix the numbers that their results have.

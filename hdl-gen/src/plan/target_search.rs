@@ -65,7 +65,7 @@ fn meet(shared: &SharedPlan, design: &Design, target_us: f64) -> Result<Plan, Pl
     })
 }
 
-/// A multiplier for each class on every lane.
+/// A multiplier for each component on every lane.
 fn lanes() -> impl DoubleEndedIterator<Item = usize> {
     (1..=MAX_LANES / CLASSES).map(|each| CLASSES * each)
 }

@@ -111,8 +111,8 @@ pub const TAKE_TO_RESIDUAL: u64 = TAKE_TO_BUS + 1;
 /// From the last weights of a frame to its count: a step for each taxel and for the end of each row, and the way through
 /// sums and comparisons.
 ///
-/// A search has a stage that is longer (that of the grid takes `4 quads` and more, the others far
-/// longer; it takes `2 quads + 82` with many lanes, where that is longer than the count), and a frame is begun only when
+/// A search has a stage that is longer (that of the grid takes `4 orbits` and more, the others far
+/// longer; it takes `2 orbits + 82` with many lanes, where that is longer than the count), and a frame is begun only when
 /// that stage of the one before the last is over. So a count is there before the search, and neither latency nor
 /// interval knows of it.
 pub fn count_contacts(sensor: &Sensor) -> u64 {

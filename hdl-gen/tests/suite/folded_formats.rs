@@ -97,13 +97,15 @@ fn check_sums(plan: &Plan, folded: &FoldedFormats) {
     }
 }
 
-/// What stands in the four classes of each quad, from the values of the taxels.
-fn fold(quads: &Quads, values: &[i64], shift: u32) -> Vec<[i64; CLASSES]> {
-    let signed = |class: usize, member: usize, value: i64| if sign(class, member) < 0.0 { -value } else { value };
-    (0..quads.count())
-        .map(|quad| {
-            let members = quads.members(quad);
-            std::array::from_fn(|class| round_shift((0..4).map(|s| signed(class, s, values[members[s]])).sum(), shift))
+/// What stands in the four components of each orbit, from the values of the taxels.
+fn fold(orbits: &Quads, values: &[i64], shift: u32) -> Vec<[i64; CLASSES]> {
+    let signed = |component: usize, image: usize, value: i64| if sign(component, image) < 0.0 { -value } else { value };
+    (0..orbits.count())
+        .map(|orbit| {
+            let images = orbits.members(orbit);
+            std::array::from_fn(|component| {
+                round_shift((0..4).map(|s| signed(component, s, values[images[s]])).sum(), shift)
+            })
         })
         .collect()
 }
@@ -111,7 +113,7 @@ fn fold(quads: &Quads, values: &[i64], shift: u32) -> Vec<[i64; CLASSES]> {
 /// For every taxel and every product that is unfolded the taxels' operand that makes the taxel's value largest: it has
 /// as many bits as any word.
 fn check_unfolded(plan: &Plan, folded: &FoldedFormats) {
-    let quads = plan.quads();
+    let orbits = plan.orbits();
     for product in &plan.products {
         let matrix = &plan.matrices[product.matrix];
         // Range of a taxel's operand, bits by which its fold is coarser, and the bound of a taxel's result.
@@ -127,12 +129,12 @@ fn check_unfolded(plan: &Plan, folded: &FoldedFormats) {
             Epilogue::Unfold | Epilogue::AddStress => plan.formats.u.bound,
             _ => continue,
         };
-        for (row, member) in (0..matrix.rows.len()).flat_map(|row| (0..4).map(move |member| (row, member))) {
+        for (row, image) in (0..matrix.rows.len()).flat_map(|row| (0..4).map(move |image| (row, image))) {
             let mut values = vec![0.0; plan.taxels()];
             for &(column, channels) in &matrix.rows[row] {
-                for (s, taxel) in quads.members(column as usize).into_iter().enumerate() {
+                for (s, taxel) in orbits.members(column as usize).into_iter().enumerate() {
                     let weight = |channel: usize| {
-                        let result = sign(channel ^ product.parity, member);
+                        let result = sign(channel ^ product.parity, image);
                         f64::from(channels[channel]) * result * sign(channel, s)
                     };
                     values[taxel] += (0..CLASSES).map(weight).sum::<f64>();
@@ -140,7 +142,7 @@ fn check_unfolded(plan: &Plan, folded: &FoldedFormats) {
             }
             for direction in [1.0, -1.0] {
                 let chosen = |&value: &f64| if direction * value > 0.0 { high } else { low };
-                let operand = fold(&quads, &values.iter().map(chosen).collect::<Vec<_>>(), shift);
+                let operand = fold(&orbits, &values.iter().map(chosen).collect::<Vec<_>>(), shift);
                 let result = |channel: usize| {
                     let entries = matrix.rows[row].iter();
                     let of_entry = |&(column, channels): &(u32, [i32; CLASSES])| {
@@ -148,7 +150,7 @@ fn check_unfolded(plan: &Plan, folded: &FoldedFormats) {
                     };
                     let sum = entries.map(of_entry).sum();
                     let result = round_shift(sum, product.shift);
-                    if sign(channel ^ product.parity, member) < 0.0 { -result } else { result }
+                    if sign(channel ^ product.parity, image) < 0.0 { -result } else { result }
                 };
                 let value = (0..CLASSES).map(result).sum::<i64>();
                 let more = match product.epilogue {
@@ -157,7 +159,7 @@ fn check_unfolded(plan: &Plan, folded: &FoldedFormats) {
                     _ => 0,
                 };
                 let value = value.abs() + more;
-                assert!(value <= bound, "{} quad {row} member {member}: {value} of {bound}", matrix.name);
+                assert!(value <= bound, "{} orbit {row} image {image}: {value} of {bound}", matrix.name);
             }
         }
     }

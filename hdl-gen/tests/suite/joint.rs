@@ -47,11 +47,12 @@ fn no_sum_of_the_network_can_overflow() {
             );
             for pass in network.weights.chunks(network.length) {
                 for unit in 0..network.at_once {
-                    let class =
-                        |class: usize| -> i64 { pass.iter().map(|word| i64::from(word[unit][class].abs())).sum() };
-                    let sums = [0, 1, 2, 3].map(class);
+                    let component = |component: usize| -> i64 {
+                        pass.iter().map(|word| i64::from(word[unit][component].abs())).sum()
+                    };
+                    let sums = [0, 1, 2, 3].map(component);
                     let most = 1_i64 << (INPUT_BITS - 1);
-                    assert!(sums.iter().all(|&sum| sum * most < 1 << 47), "a class fits the accumulator");
+                    assert!(sums.iter().all(|&sum| sum * most < 1 << 47), "a component fits the accumulator");
                     let narrow = pass.iter().all(|word| word[unit].iter().all(|weight| weight.abs() < 1 << 17));
                     assert!(narrow, "18 bits");
                 }

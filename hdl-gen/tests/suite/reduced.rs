@@ -20,25 +20,25 @@ use crate::support::{any_reduced_design, design_text, plan};
 /// Largest difference of two plans' forces, of the largest normal force of the frame.
 const BETWEEN_PLANS: f64 = 2e-3;
 
-pub fn swapped(class: usize) -> usize {
-    [0, 2, 1, 3][class]
+pub fn swapped(component: usize) -> usize {
+    [0, 2, 1, 3][component]
 }
 
-pub fn signed(class: usize, member: usize, value: i64) -> i64 {
-    if sign(class, member) < 0.0 { -value } else { value }
+pub fn signed(component: usize, image: usize, value: i64) -> i64 {
+    if sign(component, image) < 0.0 { -value } else { value }
 }
 
-/// A matrix of whole numbers with the mirror symmetry `parity`, from numbers for its rows at member 0 of each quad.
-pub fn symmetric(quads: &Quads, parity: usize, numbers: &[i32]) -> DMatrix<f64> {
-    let m = quads.taxels();
+/// A matrix of whole numbers with the mirror symmetry `parity`, from numbers for its rows at image 0 of each orbit.
+pub fn symmetric(orbits: &Quads, parity: usize, numbers: &[i32]) -> DMatrix<f64> {
+    let m = orbits.taxels();
     let mut dense = DMatrix::zeros(m, m);
-    for quad in 0..quads.count() {
-        let rows = quads.members(quad);
-        for column in 0..quads.count() {
-            let columns = quads.members(column);
+    for orbit in 0..orbits.count() {
+        let rows = orbits.members(orbit);
+        for column in 0..orbits.count() {
+            let columns = orbits.members(column);
             for s in 0..4 {
                 // All that must be the same or the opposite by symmetry adds up: so it is, also on the centre lines.
-                let value = f64::from(numbers[(quad * m + columns[s]) % numbers.len()]);
+                let value = f64::from(numbers[(orbit * m + columns[s]) % numbers.len()]);
                 for t in 0..4 {
                     dense[(rows[t], columns[s ^ t])] += sign(parity, t) * value;
                 }
@@ -49,47 +49,47 @@ pub fn symmetric(quads: &Quads, parity: usize, numbers: &[i32]) -> DMatrix<f64> 
 }
 
 /// A product of the lanes with four times the matrix: on centre lines its blocks have quarters.
-pub fn stored(quads: &Quads, parity: usize, dense: &DMatrix<f64>) -> QuantisedMatrix {
-    let folded = FoldedMatrix::new(&(dense * 4.0), parity, quads);
+pub fn stored(orbits: &Quads, parity: usize, dense: &DMatrix<f64>) -> QuantisedMatrix {
+    let folded = FoldedMatrix::new(&(dense * 4.0), parity, orbits);
     let entry = |row: usize, column: usize| -> Entry {
         let channels = folded.blocks.each_ref().map(|block| block[(row, column)]);
         assert!(channels.iter().all(|value| value.fract() == 0.0));
         (column as u32, channels.map(|value| value as i32))
     };
-    let n = quads.count();
+    let n = orbits.count();
     let rows = (0..n).map(|row| (0..n).map(|column| entry(row, column)).collect()).collect();
     QuantisedMatrix::from_rows("M", rows, 0)
 }
 
-/// A class of one quad of a vector of one value a taxel.
-pub fn folded(quads: &Quads, class: usize, quad: usize, x: &[i64]) -> i64 {
-    let members = quads.members(quad);
-    (0..4).map(|s| signed(class, s, x[members[s]])).sum()
+/// A component of one orbit of a vector of one value a taxel.
+pub fn folded(orbits: &Quads, component: usize, orbit: usize, x: &[i64]) -> i64 {
+    let images = orbits.members(orbit);
+    (0..4).map(|s| signed(component, s, x[images[s]])).sum()
 }
 
 /// What the lanes make of a vector of one value a taxel: folded, through the schedule, unfolded. Sixteen times the
 /// product with the matrix.
-fn through_the_lanes(quads: &Quads, product: &Product, matrix: QuantisedMatrix, lanes: usize, x: &[i64]) -> Vec<i64> {
-    let n = quads.count();
-    let folded = |class: usize, quad: usize| folded(quads, class, quad, x);
+fn through_the_lanes(orbits: &Quads, product: &Product, matrix: QuantisedMatrix, lanes: usize, x: &[i64]) -> Vec<i64> {
+    let n = orbits.count();
+    let folded = |component: usize, orbit: usize| folded(orbits, component, orbit, x);
     let (products, matrices) = (std::slice::from_ref(product), [matrix]);
     let schedule = Schedule::new(products, &matrices, lanes, false);
-    let sums = execute(&schedule, products, &matrices, n, &|product, _, quad| {
+    let sums = execute(&schedule, products, &matrices, n, &|product, _, orbit| {
         std::array::from_fn(|channel| match product.mirrored {
-            None => folded(channel, quad),
-            Some(side) => folded(swapped(channel), mirror(quad, side)),
+            None => folded(channel, orbit),
+            Some(side) => folded(swapped(channel), mirror(orbit, side)),
         })
     });
-    unfolded(quads, |quad| product.channels().map(|channel| sums[&(0, quad as u32)][channel]))
+    unfolded(orbits, |orbit| product.channels().map(|channel| sums[&(0, orbit as u32)][channel]))
 }
 
-/// The values at the taxels, from the classes of each quad.
-pub fn unfolded(quads: &Quads, classes: impl Fn(usize) -> [i64; CLASSES]) -> Vec<i64> {
-    let mut result = vec![0; quads.taxels()];
-    for quad in 0..quads.count() {
-        let classes = classes(quad);
-        for (s, taxel) in quads.members(quad).into_iter().enumerate() {
-            result[taxel] = (0..CLASSES).map(|class| signed(class, s, classes[class])).sum();
+/// The values at the taxels, from the components of each orbit.
+pub fn unfolded(orbits: &Quads, components: impl Fn(usize) -> [i64; CLASSES]) -> Vec<i64> {
+    let mut result = vec![0; orbits.taxels()];
+    for orbit in 0..orbits.count() {
+        let components = components(orbit);
+        for (s, taxel) in orbits.members(orbit).into_iter().enumerate() {
+            result[taxel] = (0..CLASSES).map(|component| signed(component, s, components[component])).sum();
         }
     }
     result
@@ -129,11 +129,11 @@ proptest! {
         numbers in proptest::collection::vec(-2_000..2_000_i32, 256),
         x in proptest::collection::vec(-1_000_000..1_000_000_i64, 49),
     ) {
-        let quads = Quads::new(columns, rows);
-        let dense = symmetric(&quads, parity, &numbers);
-        let x = &x[..quads.taxels()];
-        let matrix = stored(&quads, parity, &dense);
-        let found = through_the_lanes(&quads, &product(parity, None), matrix, lanes, x);
+        let orbits = Quads::new(columns, rows);
+        let dense = symmetric(&orbits, parity, &numbers);
+        let x = &x[..orbits.taxels()];
+        let matrix = stored(&orbits, parity, &dense);
+        let found = through_the_lanes(&orbits, &product(parity, None), matrix, lanes, x);
         prop_assert_eq!(found, exactly(&dense, x));
     }
 
@@ -144,16 +144,16 @@ proptest! {
         numbers in proptest::collection::vec(-2_000..2_000_i32, 256),
         x in proptest::collection::vec(-1_000_000..1_000_000_i64, 49),
     ) {
-        let quads = Quads::new(side, side);
-        let dense = symmetric(&quads, 1, &numbers);
+        let orbits = Quads::new(side, side);
+        let dense = symmetric(&orbits, 1, &numbers);
         let other = |taxel: usize| mirror(taxel, side);
         let mirrored = DMatrix::from_fn(side * side, side * side, |row, column| dense[(other(row), other(column))]);
-        let x = &x[..quads.taxels()];
+        let x = &x[..orbits.taxels()];
         let along_y = through_the_lanes(
-            &quads, &product(1, Some(quads.columns())), stored(&quads, 1, &dense), lanes, x,
+            &orbits, &product(1, Some(orbits.columns())), stored(&orbits, 1, &dense), lanes, x,
         );
         prop_assert_eq!(&along_y, &exactly(&mirrored, x));
-        let not_mirrored = through_the_lanes(&quads, &product(2, None), stored(&quads, 2, &mirrored), lanes, x);
+        let not_mirrored = through_the_lanes(&orbits, &product(2, None), stored(&orbits, 2, &mirrored), lanes, x);
         prop_assert_eq!(along_y, not_mirrored);
     }
 

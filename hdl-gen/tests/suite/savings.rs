@@ -5,7 +5,7 @@ use hdl_gen::plan::savings::savings;
 
 use crate::support::plan;
 
-/// A grid of 4 x 4 taxels: 16 taxels, 4 quads.
+/// A grid of 4 x 4 taxels: 16 taxels, 4 orbits.
 fn square(algorithm: &str, hardware: &str) -> Plan {
     plan(&format!(
         "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
@@ -20,8 +20,8 @@ fn steps(plan: &Plan) -> Vec<(&'static str, usize, usize)> {
 
 #[test]
 fn every_reduction_of_a_square_is_counted() {
-    // A matrix has 16 x 16 = 256 entries, folded 4 blocks of 4 x 4. The sums of the line are nine rows of 4 quads in 4
-    // channels on y+ and |w|, and the residual adds three parts of 4 quads in 4 channels.
+    // A matrix has 16 x 16 = 256 entries, folded 4 blocks of 4 x 4. The sums of the line are nine rows of 4 orbits in 4
+    // channels on y+ and |w|, and the residual adds three parts of 4 orbits in 4 channels.
     let field = steps(&square("plan = \"reduced\"", ""));
     let names: Vec<&str> = field.iter().map(|step| step.0).collect();
     assert_eq!(names, ["the paper's plan", "fewer products", "parity fold", "diagonal mirror"]);

@@ -198,7 +198,7 @@ fn any_matrices() -> impl Strategy<Value = (Vec<QuantisedMatrix>, usize)> {
 }
 
 /// The products of a reduced plan with other matrices in place of its own, those of the sums and of the friction
-/// excepted; by whether one matrix serves both directions. Of one quad up to five by five.
+/// excepted; by whether one matrix serves both directions. Of one orbit up to five by five.
 fn any_folded_matrices() -> impl Strategy<Value = (Vec<Product>, Vec<QuantisedMatrix>, usize)> {
     (1_usize..=5, any::<bool>(), any::<bool>()).prop_flat_map(|(side, mirrored, field)| {
         let pitch = if mirrored { [4.0, 4.0] } else { [4.0, 2.0] };

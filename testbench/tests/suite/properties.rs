@@ -155,7 +155,7 @@ fn corner_designs_agree_with_the_model() {
     judge(&plans);
 }
 
-/// The same for the reduced plan: one quad, whose programs are shorter than the pipelines; sides of which the middle
+/// The same for the reduced plan: one orbit, whose programs are shorter than the pipelines; sides of which the middle
 /// column or row is its own mirror image; one group of four lanes, and as many as there can be.
 #[test]
 fn corner_designs_of_the_reduced_plan_agree_with_the_model() {
@@ -176,9 +176,9 @@ fn corner_designs_of_the_reduced_plan_agree_with_the_model() {
     let latency = Kind::Field { latency: true };
     let joint = |field, correction| Kind::Joint { field, correction };
     let shapes = [
-        ("one_quad", base(field, 2, 2, 4)),
-        ("one_square_quad_for_latency", square(base(latency, 2, 2, 8))),
-        ("one_quad_resultants", base(Kind::Resultants, 2, 2, 64)),
+        ("one_orbit", base(field, 2, 2, 4)),
+        ("one_square_orbit_for_latency", square(base(latency, 2, 2, 8))),
+        ("one_orbit_resultants", base(Kind::Resultants, 2, 2, 64)),
         ("square_and_odd", square(base(field, 3, 3, 4))),
         ("even_and_odd", base(latency, 2, 7, 4)),
         ("odd_and_even", base(field, 7, 2, 12)),
@@ -189,7 +189,7 @@ fn corner_designs_of_the_reduced_plan_agree_with_the_model() {
         // Two and eight taxels a cell of the search with three points.
         ("two_a_cell", base(field, 7, 7, 64)),
         ("eight_a_cell", base(Kind::Resultants, 12, 12, 64)),
-        ("one_quad_joint", base(joint(true, true), 2, 2, 4)),
+        ("one_orbit_joint", base(joint(true, true), 2, 2, 4)),
         ("uncorrected_joint", base(joint(true, false), 5, 3, 4)),
         ("resultants_joint", base(joint(false, true), 9, 4, 16)),
         ("wide_joint", base(joint(true, true), 40, 2, 8)),
@@ -236,10 +236,10 @@ fn corner_designs_with_a_range_for_each_frame_agree_with_the_model() {
     let shapes = [
         ("paper_of_four_scaled", base(Kind::Paper, 2, 2, 24)),
         ("paper_narrow_scaled", Shape { coefficient_bits: 8, data_bits: 16, ..base(Kind::Paper, 6, 4, 3) }),
-        ("one_quad_scaled", base(Kind::Resultants, 2, 2, 64)),
+        ("one_orbit_scaled", base(Kind::Resultants, 2, 2, 64)),
         ("odd_for_latency_scaled", base(Kind::Field { latency: true }, 3, 5, 4)),
         ("most_lanes_scaled", base(Kind::Field { latency: false }, 10, 10, 100)),
-        ("one_quad_joint_scaled", base(joint(true, true), 2, 2, 4)),
+        ("one_orbit_joint_scaled", base(joint(true, true), 2, 2, 4)),
         ("joint_scaled", Shape { full_scale_pa: 1e-3, ..base(joint(true, true), 9, 4, 16) }),
         ("wide_words_scaled", Shape { coefficient_bits: 27, data_bits: 35, ..base(joint(true, true), 6, 5, 8) }),
         ("narrow_joint_scaled", Shape { coefficient_bits: 8, data_bits: 16, ..base(joint(false, true), 6, 7, 8) }),

@@ -98,25 +98,25 @@ impl EstimatorBlock for JointPlan {
     }
 
     fn search_blocks(&self, sensor: &Sensor) -> Vec<BlockCost> {
-        let quads = Quads::new(sensor.columns, sensor.rows).count();
-        let classes = CLASSES as u32;
-        let rows = quads.max(FEWEST_ELEMENTS);
+        let orbits = Quads::new(sensor.columns, sensor.rows).count();
+        let components = CLASSES as u32;
+        let rows = orbits.max(FEWEST_ELEMENTS);
         // Of two frames, or one of them handed on.
-        let taxels = || memory("u", 3, 2 * rows.next_power_of_two(), classes * U_BITS, false);
-        let handed_on = || memory("u", 3, rows, classes * U_BITS, false);
+        let taxels = || memory("u", 3, 2 * rows.next_power_of_two(), components * U_BITS, false);
+        let handed_on = || memory("u", 3, rows, components * U_BITS, false);
         // The squares of depths, which are short, and both moments.
         let search = BlockCost::new("search", &["sptfra_grid_search"], self.search.multipliers());
         let mut blocks = vec![search.narrow(self.search.weighed()).with([taxels()])];
         if let Some(network) = &self.network {
-            // The stresses of a quad, and two of their shares of all.
+            // The stresses of an orbit, and two of their shares of all.
             let features = BlockCost::new("features", &["sptfra_features"], CLASSES + 2);
-            // Each member of a place in the window may be in any quarter of the grid.
+            // Each image of a place in the window may be in any quarter of the grid.
             blocks.push(features.with([handed_on(), memory("features", CLASSES * CLASSES, rows, STRESS_BITS, false)]));
-            // The hidden units' four classes, and both components.
+            // The hidden units' four parity components, and both friction components.
             let units = BlockCost::new("network", &["sptfra_network"], CLASSES * network.at_once + READOUTS);
-            let width = WEIGHT_BITS * classes * network.at_once as u32;
+            let width = WEIGHT_BITS * components * network.at_once as u32;
             blocks.push(units.with([
-                memory("features, folded", 1, network.length, classes * INPUT_BITS, false),
+                memory("features, folded", 1, network.length, components * INPUT_BITS, false),
                 memory("network weights", 1, network.weights.len(), width, true),
                 memory("readout", 1, network.units(), READOUTS as u32 * WEIGHT_BITS, true),
             ]));

@@ -1,6 +1,6 @@
 //! The network of the correction in integers: weights by parity, formats that its sums cannot leave.
 //!
-//! A mirrored window changes the signs of what is odd in x or y. So the window is folded into parity classes, the
+//! A mirrored window changes the signs of what is odd in x or y. So the window is folded into parity components, the
 //! weights too, and one pass over the weights gives the four sums from which the hidden units of all four images follow.
 
 use golden::estimators::joint::{Correction, EXTRA_INPUTS, STRESS_SCALE, WEIGHT_FRACTION, WEIGHT_LIMIT};
@@ -29,7 +29,7 @@ pub const NORMAL_DROP: u32 = 2;
 /// Fraction bits of the reciprocal of the normalised `sum |b|`.
 pub const RECIPROCAL_BITS: u32 = 16;
 
-/// A hidden unit's weights of one word of inputs, by class.
+/// A hidden unit's weights of one word of inputs, by component.
 type ByClass = [i32; CLASSES];
 
 /// The network of a design.
@@ -37,11 +37,11 @@ type ByClass = [i32; CLASSES];
 pub struct NetworkPlan {
     /// Taxels on either side of the centre of the window.
     pub half_window: [usize; 2],
-    /// Words of inputs, four classes each: places of a quarter of the window, then the other inputs, then zeros.
+    /// Words of inputs, four components each: places of a quarter of the window, then the other inputs, then zeros.
     pub length: usize,
     /// Passes over the inputs.
     pub passes: usize,
-    /// Hidden units of a pass, and so sums of each class.
+    /// Hidden units of a pass, and so sums of each component.
     pub at_once: usize,
     /// One step of a weight is worth `2^weight_lsb`.
     pub weight_lsb: i32,
@@ -49,7 +49,7 @@ pub struct NetworkPlan {
     pub readout_lsb: i32,
     /// Left shift of a stress times the reciprocal, before the shift by the bits of `sum |b|`.
     pub stress_left: u32,
-    /// Bits dropped from a class's sum.
+    /// Bits dropped from a component's sum.
     pub unit_shift: u32,
     /// Bits dropped from the sum of the output; negative: added.
     pub correction_shift: i32,
@@ -75,25 +75,25 @@ impl NetworkPlan {
         let mut weight_lsb = -(WEIGHT_FRACTION as i32) - 2;
         let fixed = |weight: f64, lsb: i32| (weight * pow2(-lsb)).round() as i64;
         let fits = |lsb: i32| {
-            let sum = |unit: &Vec<ByRealClass>, class: usize| -> i64 {
-                unit.iter().map(|weights| fixed(weights[class], lsb).abs()).sum()
+            let sum = |unit: &Vec<ByRealComponent>, component: usize| -> i64 {
+                unit.iter().map(|weights| fixed(weights[component], lsb).abs()).sum()
             };
             let narrow = |weight: &f64| fixed(*weight, lsb).abs() <= largest(WEIGHT_BITS);
             units.iter().flatten().flatten().all(narrow)
-                && units.iter().all(|unit| (0..CLASSES).all(|class| sum(unit, class) < SUM_LIMIT))
+                && units.iter().all(|unit| (0..CLASSES).all(|component| sum(unit, component) < SUM_LIMIT))
         };
         while !fits(weight_lsb) {
             weight_lsb += 1;
         }
         let mut weights = vec![vec![[0; CLASSES]; at_once]; passes * length];
         for (index, unit) in units.iter().enumerate() {
-            for (word, of_class) in unit.iter().enumerate() {
+            for (word, of_component) in unit.iter().enumerate() {
                 weights[index / at_once * length + word][index % at_once] =
-                    of_class.map(|weight| fixed(weight, weight_lsb) as i32);
+                    of_component.map(|weight| fixed(weight, weight_lsb) as i32);
             }
         }
 
-        // A unit is a sum of weights times values of the window, each below 2^24; a class's sum is the mean of four
+        // A unit is a sum of weights times values of the window, each below 2^24; a component's sum is the mean of four
         // units but for signs. One bit less than the width, so that two units may be added.
         let row = |row: &Vec<i32>| row.iter().map(|weight| i64::from(weight.abs())).sum::<i64>();
         let most = correction.hidden.iter().map(row).max().unwrap_or(0);
@@ -155,11 +155,11 @@ fn at_once(lanes: usize) -> usize {
 }
 
 /// The same in f64.
-type ByRealClass = [f64; CLASSES];
+type ByRealComponent = [f64; CLASSES];
 
-/// One hidden unit's weights by word and class. A place on the middle row or column has fewer members than four, and
-/// classes without a weight: what is odd vanishes there.
-fn by_parity(row: &[i32], half_window: [usize; 2]) -> Vec<ByRealClass> {
+/// One hidden unit's weights by word and component. A place on the middle row or column has fewer images than four, and
+/// components without a weight: what is odd vanishes there.
+fn by_parity(row: &[i32], half_window: [usize; 2]) -> Vec<ByRealComponent> {
     let [half_x, half_y] = half_window;
     let width = 2 * half_x + 1;
     let window = width * (2 * half_y + 1);
@@ -168,20 +168,20 @@ fn by_parity(row: &[i32], half_window: [usize; 2]) -> Vec<ByRealClass> {
     for y in 0..=half_y {
         for x in 0..=half_x {
             let vanishes = |bits: usize| (x == 0 && bits & 1 == 1) || (y == 0 && bits & 2 == 2);
-            let members: Vec<usize> = (0..CLASSES).filter(|&member| !vanishes(member)).collect();
-            let at = |member: usize| {
-                let column = if member & 1 == 1 { half_x - x } else { half_x + x };
-                let line = if member & 2 == 2 { half_y - y } else { half_y + y };
+            let images: Vec<usize> = (0..CLASSES).filter(|&image| !vanishes(image)).collect();
+            let at = |image: usize| {
+                let column = if image & 1 == 1 { half_x - x } else { half_x + x };
+                let line = if image & 2 == 2 { half_y - y } else { half_y + y };
                 real(line * width + column)
             };
-            let class = |class: usize| {
-                if vanishes(class) {
+            let component = |component: usize| {
+                if vanishes(component) {
                     return 0.0;
                 }
-                let sum: f64 = members.iter().map(|&member| sign(class, member) * at(member)).sum();
-                sum / members.len() as f64
+                let sum: f64 = images.iter().map(|&image| sign(component, image) * at(image)).sum();
+                sum / images.len() as f64
             };
-            words.push(std::array::from_fn(class));
+            words.push(std::array::from_fn(component));
         }
     }
     let extra: [f64; EXTRA_INPUTS] = std::array::from_fn(|index| real(window + index));
@@ -233,24 +233,25 @@ mod tests {
             for (index, sign) in [sign_x, sign_y, sign_x, sign_y, 1.0].into_iter().enumerate() {
                 direct += f64::from(row[15 + index]) * sign * features[15 + index];
             }
-            for class in 0..CLASSES {
-                let of_class = sign(class, signs);
+            for component in 0..CLASSES {
+                let of_component = sign(component, signs);
                 for y in 0..3 {
                     for x in 0..2 {
                         let mut input = 0.0;
-                        for member in 0..CLASSES {
-                            if (x == 0 && member & 1 == 1) || (y == 0 && member & 2 == 2) {
+                        for image in 0..CLASSES {
+                            if (x == 0 && image & 1 == 1) || (y == 0 && image & 2 == 2) {
                                 continue;
                             }
-                            let column = if member & 1 == 1 { 1 - x } else { 1 + x };
-                            let line = if member & 2 == 2 { 2 - y } else { 2 + y };
-                            input += sign(class, member) * features[line * 3 + column];
+                            let column = if image & 1 == 1 { 1 - x } else { 1 + x };
+                            let line = if image & 2 == 2 { 2 - y } else { 2 + y };
+                            input += sign(component, image) * features[line * 3 + column];
                         }
-                        folded += of_class * words[y * 2 + x][class] * input;
+                        folded += of_component * words[y * 2 + x][component] * input;
                     }
                 }
                 let extras = [[features[19], features[15], features[16], 0.0], [0.0, features[17], features[18], 0.0]];
-                folded += of_class * (words[6][class] * extras[0][class] + words[7][class] * extras[1][class]);
+                folded += of_component
+                    * (words[6][component] * extras[0][component] + words[7][component] * extras[1][component]);
             }
             assert!((direct / 4096.0 - folded).abs() < 1e-9, "{signs}: {direct} {folded}");
         }

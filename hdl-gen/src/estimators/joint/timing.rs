@@ -15,9 +15,9 @@ pub const CORRECTED: u64 = 2;
 /// From the start of the window to its first word.
 pub const FIRST_WORD: u64 = 11;
 
-/// Centroid of the level set to that of the contact: two cycles a quad, the divisions.
+/// Centroid of the level set to that of the contact: two cycles an orbit, the divisions.
 pub fn features(sensor: &Sensor) -> u64 {
-    2 * quads(sensor) + 33
+    2 * orbits(sensor) + 33
 }
 
 /// Start of the window to its last word.
@@ -44,6 +44,6 @@ pub fn stages(sensor: &Sensor, plan: &JointPlan) -> Vec<Stage> {
     }
 }
 
-fn quads(sensor: &Sensor) -> u64 {
+fn orbits(sensor: &Sensor) -> u64 {
     Quads::new(sensor.columns, sensor.rows).count() as u64
 }

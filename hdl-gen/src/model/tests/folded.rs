@@ -31,7 +31,7 @@ fn top(values: &[i64]) -> i64 {
 /// the largest weight or y+.
 fn check(plan: &Plan, stress: &[i64], friction: [i64; 2]) -> i64 {
     let folded = plan.formats.folded.unwrap();
-    let integers = integer::by_quad(plan);
+    let integers = integer::by_orbit(plan);
     let mut frame = frame(plan, &integers, stress);
     run(plan, &integers, 0..plan.products.len(), friction, &mut frame);
     let within = |what: &str, found: i64, bound: i64| assert!(found <= bound, "{what} reaches {found} of {bound}");
@@ -59,13 +59,13 @@ fn check(plan: &Plan, stress: &[i64], friction: [i64; 2]) -> i64 {
 /// The matrix of one value a taxel that a product's blocks stand for, by rows; in units of its coefficients, times
 /// four.
 fn unfolded(plan: &Plan, product: &Product) -> Vec<Vec<f64>> {
-    let (quads, matrix) = (plan.quads(), &plan.matrices[product.matrix]);
+    let (orbits, matrix) = (plan.orbits(), &plan.matrices[product.matrix]);
     let mut dense = vec![vec![0.0; plan.taxels()]; plan.taxels()];
-    for (quad, row) in matrix.rows.iter().enumerate() {
-        for (s, result) in quads.members(quad).into_iter().enumerate() {
+    for (orbit, row) in matrix.rows.iter().enumerate() {
+        for (s, result) in orbits.members(orbit).into_iter().enumerate() {
             let mut line = vec![0.0; plan.taxels()];
-            for &(column, channels) in row.iter().filter(|(column, _)| (*column as usize) < quads.count()) {
-                for (t, taxel) in quads.members(column as usize).into_iter().enumerate() {
+            for &(column, channels) in row.iter().filter(|(column, _)| (*column as usize) < orbits.count()) {
+                for (t, taxel) in orbits.members(column as usize).into_iter().enumerate() {
                     let of_channel = |channel: usize| {
                         sign(channel ^ product.parity, s) * sign(channel, t) * f64::from(channels[channel])
                     };
@@ -163,8 +163,8 @@ proptest! {
 #[test]
 fn folding_is_undone_but_for_a_factor_of_four() {
     for [columns, rows] in [[2, 2], [3, 3], [2, 5], [6, 4]] {
-        for members in Quads::new(columns, rows).all() {
-            let values = members.map(|taxel| 1000 - 37 * (taxel * taxel) as i64);
+        for images in Quads::new(columns, rows).all() {
+            let values = images.map(|taxel| 1000 - 37 * (taxel * taxel) as i64);
             assert_eq!(butterfly(butterfly(values)), values.map(|value| 4 * value));
         }
     }

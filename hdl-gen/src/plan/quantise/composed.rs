@@ -32,7 +32,7 @@ pub(super) struct Path {
 pub(super) struct Worst {
     /// Of a folded force.
     folded: f64,
-    /// Of four times a taxel's force: the sum over the classes.
+    /// Of four times a taxel's force: the sum over the components.
     unfolded: f64,
     /// Of a taxel's force, the part that the roundings on the way to it can make.
     pub rounding: f64,
@@ -58,7 +58,8 @@ pub(super) fn worst(c: &[QuantisedMatrix], a: &[QuantisedMatrix], path: Path) ->
         let a = blocks(stored, count);
         let mut exact = [DMatrix::zeros(count, 1), DMatrix::zeros(count, 1)];
         for ((parity, c), by) in c.iter().enumerate().zip(friction) {
-            let product: [DMatrix<f64>; CLASSES] = std::array::from_fn(|class| &a[class ^ parity] * &c[class]);
+            let product: [DMatrix<f64>; CLASSES] =
+                std::array::from_fn(|component| &a[component ^ parity] * &c[component]);
             let [folded, unfolded] = sums(&product);
             exact[0] += by * path.weights.folded.bound as f64 * path.weights.folded.step() * folded;
             exact[1] += by * path.weights.taxel.bound as f64 * path.weights.taxel.step() * unfolded;
@@ -99,14 +100,14 @@ pub(super) fn is_coarse(folded: Format, taxel_n: f64) -> bool {
     Format { lsb: folded.lsb - FOLD_BITS as i32, ..folded }.step() * enough > taxel_n
 }
 
-/// The blocks of a matrix by class of the operand, in its unit.
+/// The blocks of a matrix by component of the operand, in its unit.
 fn blocks(matrix: &QuantisedMatrix, count: usize) -> [DMatrix<f64>; CLASSES] {
     let step = f64::from(matrix.lsb).exp2();
-    std::array::from_fn(|class| {
+    std::array::from_fn(|component| {
         let mut block = DMatrix::zeros(count, count);
         for (row, entries) in matrix.rows.iter().enumerate() {
             for &(column, channels) in entries {
-                block[(row, column as usize)] = f64::from(channels[class]) * step;
+                block[(row, column as usize)] = f64::from(channels[component]) * step;
             }
         }
         block
@@ -124,18 +125,18 @@ fn row_sum(blocks: &[DMatrix<f64>; CLASSES]) -> f64 {
     blocks.iter().map(rows).fold(0.0, f64::max)
 }
 
-/// For each row of quads the largest sum of magnitudes of a block, and that of the unfolded matrix times four.
+/// For each row of orbits the largest sum of magnitudes of a block, and that of the unfolded matrix times four.
 fn sums(blocks: &[DMatrix<f64>; CLASSES]) -> [DMatrix<f64>; 2] {
     let count = blocks[0].nrows();
     let folded =
         DMatrix::from_fn(count, 1, |row, _| blocks.iter().map(|block| block.row(row).lp_norm(1)).fold(0.0, f64::max));
     let unfolded = DMatrix::from_fn(count, 1, |row, _| {
-        let of = |member: usize| {
+        let of = |image: usize| {
             let signed = |column: usize| -> f64 {
                 blocks
                     .iter()
                     .enumerate()
-                    .map(|(class, block)| golden::parity::sign(class, member) * block[(row, column)])
+                    .map(|(component, block)| golden::parity::sign(component, image) * block[(row, column)])
                     .sum()
             };
             (0..count).map(|column| signed(column).abs()).sum::<f64>()

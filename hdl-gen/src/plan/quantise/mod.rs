@@ -266,13 +266,13 @@ impl<'a> Pass<'a> {
     /// Stores `r = r0 + mu_x r1 + mu_y r2`, row by row; the coefficients are codes.
     fn friction(&mut self) {
         let Some(index) = self.list.matrices.iter().position(|form| form.source == Source::Friction) else { return };
-        let quads = self.matrices[0].rows.len();
-        let row = |quad: usize| {
+        let orbits = self.matrices[0].rows.len();
+        let row = |orbit: usize| {
             let codes = [SELECT_ONE, SELECT_MU_X, SELECT_MU_Y].into_iter().enumerate();
-            codes.map(|(part, code)| ((part * quads + quad) as u32, [code; CLASSES])).collect()
+            codes.map(|(part, code)| ((part * orbits + orbit) as u32, [code; CLASSES])).collect()
         };
         let fraction = FRICTION_FRACTION + self.factors.friction_shift();
-        let (rows, lsb) = ((0..quads).map(row).collect(), -(fraction as i32));
+        let (rows, lsb) = ((0..orbits).map(row).collect(), -(fraction as i32));
         let mut matrix = QuantisedMatrix::from_rows(&self.list.matrices[index].label(), rows, lsb);
         matrix.row_sum = LARGEST_COMBINATION << fraction;
         matrix.dropped = self.factors.dropped_of_friction();

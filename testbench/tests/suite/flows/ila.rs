@@ -21,7 +21,7 @@ fn marked(design: &str) -> FileMap {
 
 #[test]
 fn every_kind_of_core_has_the_nets() {
-    // Of taxels by themselves there is one kind of result less, of classes without a field two.
+    // Of taxels by themselves there is one kind of result less, of components without a field two.
     let designs = ["small", "small-scanner", "odd", "sensor1-fast", "sensor1-f1-l40"];
     for (design, nets) in designs.into_iter().zip([20, 18, 19, 20, 19]) {
         let files = marked(design);

@@ -12,7 +12,7 @@ const CENTRE_FRACTION: u32 = FRICTION_FRACTION;
 
 /// The network's inputs.
 pub struct Features {
-    /// By word and class, [`INPUT_FRACTION`] fraction bits.
+    /// By word and component, [`INPUT_FRACTION`] fraction bits.
     pub inputs: Vec<[i64; CLASSES]>,
     /// A value of the frame was clipped.
     pub saturated: bool,
@@ -53,9 +53,9 @@ pub fn take(network: &NetworkPlan, inputs: &Inputs, mu: [i64; 2]) -> Features {
     let mut inputs = Vec::with_capacity(network.length);
     for y in 0..=network.half_window[1] as i64 {
         for x in 0..=network.half_window[0] as i64 {
-            let [a, b, c, d] = std::array::from_fn(|member| {
-                // On the middle row or column of the window members coincide: only the first of them counts.
-                let [mirrored_x, mirrored_y] = [member & 1 == 1, member & 2 == 2];
+            let [a, b, c, d] = std::array::from_fn(|image| {
+                // On the middle row or column of the window images coincide: only the first of them counts.
+                let [mirrored_x, mirrored_y] = [image & 1 == 1, image & 2 == 2];
                 if (mirrored_x && x == 0) || (mirrored_y && y == 0) {
                     return 0;
                 }

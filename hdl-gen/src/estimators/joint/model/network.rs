@@ -5,17 +5,17 @@ use golden::parity::CLASSES;
 use super::super::{CORRECTION_LIMIT, NetworkPlan};
 use crate::plan::format::round_shift;
 
-/// The correction of both friction components for the features by word and class.
+/// The correction of both friction components for the features by word and component.
 pub fn correction(network: &NetworkPlan, inputs: &[[i64; CLASSES]]) -> [i64; 2] {
     let mut sums = [0; 2];
     for (pass, weights) in network.weights.chunks(network.length).enumerate() {
         for (unit, readout) in network.readout.iter().skip(pass * network.at_once).take(network.at_once).enumerate() {
-            let class = |class: usize| -> i64 {
+            let component = |component: usize| -> i64 {
                 let terms = weights.iter().zip(inputs);
-                let sum = terms.map(|(weights, inputs)| i64::from(weights[unit][class]) * inputs[class]).sum();
+                let sum = terms.map(|(weights, inputs)| i64::from(weights[unit][component]) * inputs[component]).sum();
                 round_shift(sum, network.unit_shift)
             };
-            let [a, b, c, d] = std::array::from_fn(class);
+            let [a, b, c, d] = std::array::from_fn(component);
             // Of the four mirror images, then their hinges, mirrored back.
             let images = [a + b + c + d, a - b + c - d, a + b - c - d, a - b - c + d];
             let [a, b, c, d] = images.map(|sum| sum.max(0));
