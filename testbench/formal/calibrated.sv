@@ -51,7 +51,7 @@ module harness (
         .cean_idle              (cean_idle),
         .direction_room         (direction_room),
         .frame_done             (frame_done),
-        .calibration_acting     ({active, 67'd0}),
+        .active_calibration     ({active, 67'd0}),
         .calibration_old_in_use (old_in_use),
         .tare_command           ({tare_run, 8'd0}),
         .frame_calibrates       (frame_calibrates),

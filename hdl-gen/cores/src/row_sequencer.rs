@@ -1,4 +1,4 @@
-//! The row sequencer of a sparse matrix-vector lane: counts the products of every row.
+//! The row sequencer of a sparse matrix-vector PE: counts the products of every row.
 
 use rust_hdl_core::prelude::*;
 
@@ -73,7 +73,7 @@ impl Logic for RowSequencer {
 const DESCRIPTION: Description = Description {
     path: "spmv/sptfra_row_sequencer.v",
     banner: "\
-Row sequencer of a sparse matrix-vector lane: marks the first and the last product of every row.
+Row sequencer of a sparse matrix-vector PE: marks the first and the last product of every row.
 
 Walks a ROM with one word a row, {kind[1:0], macs[13:0]} with macs >= 1 products. The ROM is outside and
 registered: row_word is the word at the row_address of the last cycle with row_fetch. One product a cycle, rows

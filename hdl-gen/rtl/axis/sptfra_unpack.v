@@ -39,7 +39,7 @@ module sptfra_unpack #(
     localparam LEFT_WIDTH = $clog2(SAMPLES + 1);
     localparam [LEFT_WIDTH-1:0] ONE = 1;
     localparam [31:0] ALL = SAMPLES;
-    localparam [31:0] REST = TAXELS - (BEATS - 1) * SAMPLES; // of a frame's last beat
+    localparam [31:0] REMAINDER = TAXELS - (BEATS - 1) * SAMPLES; // of a frame's last beat
 
     generate
         if ((SAMPLES < 2) || (SAMPLES > 8)) begin : gen_check_samples
@@ -68,7 +68,7 @@ module sptfra_unpack #(
         if (s_tvalid && s_tready) begin
             held <= s_tdata;
             held_last <= s_tlast;
-            left <= inner_beat ? ALL[LEFT_WIDTH-1:0] : last_beat ? REST[LEFT_WIDTH-1:0] : ONE;
+            left <= inner_beat ? ALL[LEFT_WIDTH-1:0] : last_beat ? REMAINDER[LEFT_WIDTH-1:0] : ONE;
             beat <= s_tlast ? {BEAT_WIDTH{1'b0}} : (beat == END) ? beat : beat + 1'b1;
         end
         if (reset) begin

@@ -64,7 +64,7 @@ module sptfra_features_window #(
     localparam [8:0] GRID_COLUMNS = COLUMNS[8:0];
     localparam [8:0] GRID_ROWS = ROWS[8:0];
 
-    localparam [2:0] IDLE = 3'd0, CENTRE = 3'd1, WINDOW = 3'd2, FLUSH = 3'd3, REST = 3'd4;
+    localparam [2:0] IDLE = 3'd0, CENTRE = 3'd1, WINDOW = 3'd2, FLUSH = 3'd3, REMAINING = 3'd4;
 
     generate
         if (LENGTH < PLACES + 2) begin : gen_check
@@ -237,19 +237,19 @@ module sptfra_features_window #(
     wire [INPUT_BITS-1:0] input_left_y = { {(9 - FINER){left_y[17]}}, left_y, {FINER{1'b0}}};
     localparam [INPUT_BITS-1:0] ZERO = {INPUT_BITS{1'b0}};
     reg first_word;
-    wire next_word = there[7] || (state == REST);
+    wire next_word = there[7] || (state == REMAINING);
     wire last_word = (input_word == LAST_BUT_ONE[WORD_WIDTH-1:0]); // the last but one is out
 
     always @(posedge clock) begin
         input_valid <= next_word;
         input_first <= next_word && first_word;
-        done <= (state == REST) && last_word;
+        done <= (state == REMAINING) && last_word;
         if (next_word) begin
             input_word <= first_word ? {WORD_WIDTH{1'b0}} : input_word + 1'b1;
             first_word <= 1'b0;
         end
         input_values <= folded_7;
-        if (state == REST) begin
+        if (state == REMAINING) begin
             if (input_word == LAST_OF_WINDOW[WORD_WIDTH-1:0]) begin
                 input_values <= {ZERO, input_mu_y, input_mu_x, INPUT_ONE};
             end else if (input_word == PLACES[WORD_WIDTH-1:0]) begin
@@ -291,7 +291,7 @@ module sptfra_features_window #(
             end
             FLUSH: begin // the last place
                 if (wait_count == 3'd6) begin
-                    state <= REST;
+                    state <= REMAINING;
                 end
             end
             default: begin

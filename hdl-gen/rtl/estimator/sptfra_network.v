@@ -42,7 +42,7 @@ module sptfra_network #(
 );
 
     localparam integer INPUT_BITS = 27;
-    localparam integer UNIT_BITS = 26; // of a hidden unit before the hinge
+    localparam integer UNIT_BITS = 26; // of a hidden unit before the rectifier
     localparam integer SUMS = 4 * AT_ONCE; // units by four components
     localparam integer UNITS = AT_ONCE * PASSES;
     localparam integer UNIT_WIDTH = $clog2(AT_ONCE);
@@ -156,12 +156,12 @@ module sptfra_network #(
         end
     endgenerate
 
-    // ---- One unit after the other: the mirror images, their hinges, mirrored back
+    // ---- One unit after the other: the mirror images, their rectifiers, mirrored back
     reg [UNIT_WIDTH:0] unit; // AT_ONCE: none
     reg [5:1] unit_there; // index k: k cycles after its number
     reg [4*UNIT_BITS-1:0] components_1;
     wire [4*UNIT_BITS+7:0] images_3;
-    wire [4*UNIT_BITS-1:0] hinges_3;
+    wire [4*UNIT_BITS-1:0] rectifiers_3;
     wire [4*UNIT_BITS+7:0] mean_5;
 
     always @(posedge clock) begin
@@ -190,11 +190,11 @@ module sptfra_network #(
 
     // The sum of a unit fits the width, by the plan's bound: the bits above are copies of the sign
     generate
-        for (index = 0; index < 4; index = index + 1) begin : gen_hinges
+        for (index = 0; index < 4; index = index + 1) begin : gen_rectifiers
             wire [UNIT_BITS+1:0] image = images_3[(UNIT_BITS+2)*index +: UNIT_BITS+2];
             wire negative = image[UNIT_BITS+1];
 
-            assign hinges_3[UNIT_BITS*index +: UNIT_BITS] = negative ? {UNIT_BITS{1'b0}} : image[UNIT_BITS-1:0];
+            assign rectifiers_3[UNIT_BITS*index +: UNIT_BITS] = negative ? {UNIT_BITS{1'b0}} : image[UNIT_BITS-1:0];
 
             wire _unused = &{1'b0, image[UNIT_BITS]};
         end
@@ -205,7 +205,7 @@ module sptfra_network #(
     ) mirror_back (
         .clock  (clock),
         .enable (1'b1),
-        .values (hinges_3),
+        .values (rectifiers_3),
         .sums   (mean_5)
     );
 

@@ -45,7 +45,7 @@ module sptfra_search_cell #(
 
     localparam integer FRICTION_FRACTION = 16; // of t
     localparam integer LINE_FRACTION = 15; // of c0 and c1
-    localparam integer HINGE_DROP = 8;
+    localparam integer RECTIFIER_DROP = 8;
     localparam integer DEPTH = 2 << ELEMENT_WIDTH; // two frames
 
     (* ram_style = "distributed" *) reg signed [26:0] memory_0 [0:DEPTH-1]; // u0
@@ -95,7 +95,7 @@ module sptfra_search_cell #(
     wire signed [44:0] product_low_2; // the product is their sum
     wire signed [44:0] product_high_2;
     reg signed [44:0] addend_2;
-    reg signed [44:0] hinge_3;
+    reg signed [44:0] rectifier_3;
     reg signed [26:0] multiplicand_2;
     reg signed [26:0] multiplicand_3;
 
@@ -116,13 +116,13 @@ module sptfra_search_cell #(
             ? { {(18 - LINE_FRACTION){addend_1[26]}}, addend_1, 1'b1, {(LINE_FRACTION - 1){1'b0}}}
             : { {(18 - FRICTION_FRACTION){addend_less[26]}}, addend_less, {FRICTION_FRACTION{slopes[1]}}};
         multiplicand_2 <= multiplicand_1;
-        hinge_3 <= addend_2 + product_low_2 + product_high_2;
+        rectifier_3 <= addend_2 + product_low_2 + product_high_2;
         multiplicand_3 <= multiplicand_2;
     end
 
     // ---- Alpha and beta, clipped to 27 bits
-    wire signed [44-LINE_FRACTION:0] rounded = hinge_3[44:LINE_FRACTION];
-    wire sign = hinge_3[44];
+    wire signed [44-LINE_FRACTION:0] rounded = rectifier_3[44:LINE_FRACTION];
+    wire sign = rectifier_3[44];
     wire fits = (rounded[44-LINE_FRACTION:26] == {(19 - LINE_FRACTION){rounded[26]}});
     wire signed [26:0] clipped = fits ? rounded[26:0] : {sign, {26{!sign}}};
 
@@ -148,8 +148,8 @@ module sptfra_search_cell #(
         end
     end
 
-    // ---- With three points a stage between: hinges at the others
-    wire [45*POINTS-1:0] point_hinges;
+    // ---- With three points a stage between: rectifiers at the others
+    wire [45*POINTS-1:0] point_rectifiers;
     wire signed [26:0] slope_term;
     wire term_valid;
     wire term_slope;
@@ -157,7 +157,7 @@ module sptfra_search_cell #(
 
     generate
         if (POINTS == 1) begin : gen_point
-            assign point_hinges = hinge_3;
+            assign point_rectifiers = rectifier_3;
             assign slope_term = multiplicand_3;
             assign term_valid = valid[3];
             assign term_slope = slopes[3];
@@ -168,9 +168,9 @@ module sptfra_search_cell #(
             (* keep = "true" *) reg [2:0] round_1;
             reg signed [41:0] part_2; // beta h
             reg signed [41:0] part_3;
-            reg signed [44:0] hinge_4;
-            reg signed [44:0] hinge_less_4;
-            reg signed [44:0] hinge_less_2_4;
+            reg signed [44:0] rectifier_4;
+            reg signed [44:0] rectifier_less_4;
+            reg signed [44:0] rectifier_less_2_4;
             reg signed [26:0] multiplicand_4;
 
             always @(posedge clock) begin
@@ -186,13 +186,13 @@ module sptfra_search_cell #(
                     default: part_2 <= { {14{multiplicand_1[26]}}, multiplicand_1, 1'd0};
                 endcase
                 part_3 <= part_2;
-                hinge_4 <= hinge_3;
-                hinge_less_4 <= hinge_3 - { {3{part_3[41]}}, part_3};
-                hinge_less_2_4 <= hinge_3 - { {2{part_3[41]}}, part_3, 1'b0};
+                rectifier_4 <= rectifier_3;
+                rectifier_less_4 <= rectifier_3 - { {3{part_3[41]}}, part_3};
+                rectifier_less_2_4 <= rectifier_3 - { {2{part_3[41]}}, part_3, 1'b0};
                 multiplicand_4 <= multiplicand_3;
             end
 
-            assign point_hinges = {hinge_less_2_4, hinge_less_4, hinge_4};
+            assign point_rectifiers = {rectifier_less_2_4, rectifier_less_4, rectifier_4};
             assign slope_term = multiplicand_4;
             assign term_valid = valid[4];
             assign term_slope = slopes[4];
@@ -204,24 +204,24 @@ module sptfra_search_cell #(
     genvar point;
     generate
         for (point = 0; point < POINTS; point = point + 1) begin : gen_sums
-            wire [44:0] hinge = point_hinges[45*point +: 45];
+            wire [44:0] rectifier = point_rectifiers[45*point +: 45];
             reg signed [47:0] term;
             reg signed [47:0] sum;
 
             always @(posedge clock) begin
-                if (!term_valid || hinge[44]) begin
+                if (!term_valid || rectifier[44]) begin
                     term <= 48'sd0;
                 end else if (term_slope) begin
                     term <= { {21{slope_term[26]}}, slope_term};
                 end else begin
-                    term <= { {(3 + HINGE_DROP){1'b0}}, hinge[44:HINGE_DROP]};
+                    term <= { {(3 + RECTIFIER_DROP){1'b0}}, rectifier[44:RECTIFIER_DROP]};
                 end
                 sum <= (term_first ? 48'sd0 : sum) + term;
             end
 
             assign sums[48*point +: 48] = sum;
 
-            wire _unused = &{1'b0, hinge[HINGE_DROP-1:0]};
+            wire _unused = &{1'b0, rectifier[RECTIFIER_DROP-1:0]};
         end
     endgenerate
 

@@ -96,7 +96,7 @@ module sptfra_search_cells #(
                 .ELEMENT_WIDTH (ELEMENT_WIDTH),
                 .COUNT         ((index / CHANNELS == GROUPS - 1) ? LAST_COUNT : CELL_ELEMENTS),
                 .POINTS        (POINTS)
-            ) hinges (
+            ) rectifiers (
                 .clock        (clock),
                 .reset        (reset),
                 .fill         (u_valid & {3{group == index / CHANNELS}}),

@@ -189,7 +189,7 @@ module sptfra_banks #(
                 .command      ({more[55:51], more[50:49] & {2{!of_curve}}, more[48:0]}),
                 .result       (map_result),
                 .active       (active),
-                .acting_count (active_count),
+                .active_count (active_count),
                 .read_enable  (1'b1),
                 .read_bank    (bank),
                 .read_taxel   (taxel_ahead),

@@ -96,7 +96,7 @@ module sptfra_bz #(
     input  wire frame_release, // its bank is free again
     input  wire [3:0] smoothing, // see sptfra_smoothing
     // Calibration: {active bank, version, contact, noise}; a frame inside began with the other bank
-    input  wire [67:0] calibration_acting,
+    input  wire [67:0] active_calibration,
     output wire calibration_old_in_use,
     input  wire [COMMAND_BITS-1:0] bank_command, // as of sptfra_banks
     output wire [WORDS_BITS-1:0] bank_words,
@@ -155,7 +155,7 @@ module sptfra_bz #(
 
     // ---- The calibration bank of the frame
     reg bank_held;
-    wire active = calibration_acting[67];
+    wire active = active_calibration[67];
     wire bank = in_frame ? bank_held : active;
 
     assign frame_calibrates = opens;
@@ -247,7 +247,7 @@ module sptfra_bz #(
         if (CALIBRATED != 0) begin : gen_calibration
             wire [3:0] replaced;
 
-            assign frame_calibration = {calibration_acting[58:0], calibration_acting[66:59], replaced};
+            assign frame_calibration = {active_calibration[58:0], active_calibration[66:59], replaced};
 
             sptfra_banks #(
                 .TAXELS           (TAXELS),
@@ -270,7 +270,7 @@ module sptfra_bz #(
                 .words          (bank_words),
                 .tare_command   (tare_command),
                 .tare_result    (tare_result),
-                .most_spread    (calibration_acting[26:0]),
+                .most_spread    (active_calibration[26:0]),
                 .active         (active),
                 .active_count   (replaced),
                 .opens          (opens),
@@ -295,7 +295,7 @@ module sptfra_bz #(
             assign bank_words = 1'b0;
             assign tare_result = 30'd0;
             assign {constants, curve, line, map} = {(OFFSET_BITS+27*(1<<LEVELS)+34*PLACES+176){1'b0}};
-            wire _unused_calibration = &{1'b0, calibration_acting, bank_command, tare_command, segment, CURVE_COUNT,
+            wire _unused_calibration = &{1'b0, active_calibration, bank_command, tare_command, segment, CURVE_COUNT,
                 CURVE_LAST_VALUE, exponent_taxels, gain_taxels, bank, out_valid};
         end
     endgenerate

@@ -103,8 +103,8 @@ module sptfra_calibration #(
     reg [53:0] noises;
     wire copy_writes = (state == COPY) && (step == COPY_WRITES);
     // Or of the other one: what acts is read, and never written.
-    wire of_acting = (state == IDLE) ? (index_active && !write) : (state == COPY) && !copy_writes;
-    wire bank = of_acting ? active : !active;
+    wire of_active = (state == IDLE) ? (index_active && !write) : (state == COPY) && !copy_writes;
+    wire bank = of_active ? active : !active;
 
     // Configuration, not reset, brings the design's content
     initial begin
@@ -154,7 +154,7 @@ module sptfra_calibration #(
     assign write_allowed = (of_gain && gain_fits) || (of_offset && offset_fits)
         || (of_contact && (write_data != 32'd0)) || (of_noise && noise_fits) || (of_dead && dead_result[32]);
 
-    // ---- Tare: offsets of the acting bank, less what the frames had
+    // ---- Tare: offsets of the active bank, less what the frames had
     reg [27:0] copied_gain;
     reg signed [31:0] new_offset;
     wire new_offset_fits = (new_offset <= OFFSET_LIMIT) && (new_offset >= -OFFSET_LIMIT);

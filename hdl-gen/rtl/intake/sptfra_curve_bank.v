@@ -33,7 +33,7 @@ module sptfra_curve_bank #(
     input  wire clock,
     input  wire [55:0] command, // as of sptfra_dead_bank
     output wire [33:0] result,
-    // While a tare listens, the acting bank's curve is copied into the other one
+    // While a tare listens, the active bank's curve is copied into the other one
     input  wire active,
     input  wire tare_run,
     output wire copying,

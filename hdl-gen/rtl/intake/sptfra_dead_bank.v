@@ -35,7 +35,7 @@ module sptfra_dead_bank #(
     output wire [33:0] result, // {contradicts itself, data may be written, word: a cycle after its place}
     // Of the bank that acts, and of the frame that comes in
     input  wire active,
-    output wire [3:0] acting_count,
+    output wire [3:0] active_count,
     input  wire read_enable,
     input  wire read_bank,
     input  wire [TAXEL_WIDTH-1:0] read_taxel,
@@ -208,7 +208,7 @@ module sptfra_dead_bank #(
     wire [HEAD_BITS-1:0] read_head = read_bank ? head_1 : head_0;
 
     assign result = {contradicts, allowed, word};
-    assign acting_count = active ? head_1[3:0] : head_0[3:0];
+    assign active_count = active ? head_1[3:0] : head_0[3:0];
     assign {read_numbers, read_shift, read_count} = read_head;
 
     wire _unused = &{1'b0, behind_count[15:3], taxel, LAST_PLACE};

@@ -60,14 +60,14 @@ module sptfra_frame_corrections #(
 
     localparam BEATS = (TAXELS + SAMPLES - 1) / SAMPLES;
     localparam BEAT_WIDTH = (BEATS > 2) ? $clog2(BEATS) : 1;
-    localparam REST = TAXELS - (BEATS - 1) * SAMPLES; // samples of the last beat
-    localparam [31:0] REST_MASK = (1 << REST) - 1;
+    localparam REMAINDER = TAXELS - (BEATS - 1) * SAMPLES; // samples of the last beat
+    localparam [31:0] REMAINDER_MASK = (1 << REMAINDER) - 1;
     localparam [31:0] LAST_BEAT = BEATS - 1;
 
     // ---- Samples of the frame
     reg [BEAT_WIDTH-1:0] beat;
     wire last_beat = (beat == LAST_BEAT[BEAT_WIDTH-1:0]);
-    wire [SAMPLES-1:0] counted = last_beat ? REST_MASK[SAMPLES-1:0] : {SAMPLES{1'b1}};
+    wire [SAMPLES-1:0] counted = last_beat ? REMAINDER_MASK[SAMPLES-1:0] : {SAMPLES{1'b1}};
     wire [27*SAMPLES-1:0] own_stresses;
     wire [SAMPLES-1:0] own_saturated = in_saturated & counted;
     wire [SAMPLES-1:0] own_not_finite = in_not_finite & counted;

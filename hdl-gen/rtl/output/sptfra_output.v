@@ -80,7 +80,7 @@ module sptfra_output #(
     localparam integer BEATS = (FIELD != 0) ? SUMMARY_BEATS + FIELD_BEATS : SUMMARY_BEATS;
     localparam integer BEAT_WIDTH = $clog2(BEATS);
     localparam integer LAST_BEAT = BEATS - 1;
-    localparam integer REST = FIELD_WORDS - (FIELD_BEATS - 1) * WORDS; // words of the field's last beat
+    localparam integer REMAINDER = FIELD_WORDS - (FIELD_BEATS - 1) * WORDS; // words of the field's last beat
     // The beat before the first one that steps the field memory: its forces arrive at the end of stage 3
     localparam integer BEFORE_READ = SUMMARY_BEATS + 3 - FIELD_STAGES;
     localparam [SUMMARY_WIDTH-1:0] BEFORE_READ_BEAT = BEFORE_READ[SUMMARY_WIDTH-1:0];
@@ -230,7 +230,7 @@ module sptfra_output #(
                 .word_2            (word_wide_2[3:0] | PLACE),
                 .in_field_3        (in_field[3]),
                 .blank_3           (blanks[3]),
-                .behind_3          ((index >= REST) && lasts[3]),
+                .behind_3          ((index >= REMAINDER) && lasts[3]),
                 .field_value_3     (force_3),
                 .data_11           (m_tdata[32*index +: 32]),
                 .frame_2           (frame_2),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Program scheduler: starts the lanes' programs of the frames under way.
+// Program scheduler: starts the PEs' programs of the frames under way.
 //
 // A frame's first program gives its weights and the inputs of its search. With a field in the lanes, the second gives
 // the residual stress. The third gives the field, once the search has found the friction. A program starts in the
@@ -41,7 +41,7 @@ module sptfra_program_scheduler #(
             sptfra_error_programs_must_be_1_to_3 invalid ();
         end
         if ((RESIDUALS < 1) || (RESIDUALS > 2)) begin : gen_check_residuals
-            sptfra_error_one_or_two_residuals_have_a_place invalid ();
+            sptfra_error_one_or_two_residuals_have_a_buffer invalid ();
         end
     endgenerate
 

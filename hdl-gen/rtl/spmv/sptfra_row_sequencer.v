@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Row sequencer of a sparse matrix-vector lane: marks the first and the last product of every row.
+// Row sequencer of a sparse matrix-vector PE: marks the first and the last product of every row.
 //
 // Walks a ROM with one word a row, {kind[1:0], macs[13:0]} with macs >= 1 products. The ROM is outside and
 // registered: row_word is the word at the row_address of the last cycle with row_fetch. One product a cycle, rows

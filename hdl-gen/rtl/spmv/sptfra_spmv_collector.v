@@ -112,8 +112,8 @@ module sptfra_spmv_collector #(
     reg  [ROW_WIDTH-1:0] row;
     wire [WORD_WIDTH-1:0] slot;
     reg  [PES-1:0] select; // PE, one bit each
-    reg  parted; // both halves of y are written: the next result waits a cycle
-    wire may_take = slot_known && !parted;
+    reg  separated; // both halves of y are written: the next result waits a cycle
+    wire may_take = slot_known && !separated;
     wire taking = (take != {PES{1'b0}});
     wire ends = taking && last;
     wire jump = stopped && jump_waits;
@@ -160,14 +160,14 @@ module sptfra_spmv_collector #(
         end else if (jump) begin
             stopped <= 1'b0;
         end
-        parted <= (CHANNELS > 1) && taking && (destination == Y[DESTINATION_BITS-1:0]);
+        separated <= (CHANNELS > 1) && taking && (destination == Y[DESTINATION_BITS-1:0]);
         if (reset) begin
             slot_count <= {SLOT_WIDTH{1'b0}};
             slot_known <= 1'b0;
             stopped <= 1'b1;
             jump_waits <= 1'b0;
             aimed <= 1'b0;
-            parted <= 1'b0;
+            separated <= 1'b0;
         end
     end
 

@@ -1,4 +1,4 @@
-//! The row sequencer of a sparse matrix-vector lane: counts the products of every row.
+//! The row sequencer of a sparse matrix-vector PE: counts the products of every row.
 
 /// Bits of the product count in a row word; the two bits above them are the row's kind.
 pub const MACS_BITS: u32 = 14;

@@ -42,7 +42,7 @@ fn modules_and_model_have_the_same_constants() {
         ("sptfra_search", "ONE", one),
         ("sptfra_search_cell", "FRICTION_FRACTION", FRICTION_FRACTION.into()),
         ("sptfra_search_cell", "LINE_FRACTION", line::LINE_FRACTION.into()),
-        ("sptfra_search_cell", "HINGE_DROP", line::HINGE_DROP.into()),
+        ("sptfra_search_cell", "RECTIFIER_DROP", line::RECTIFIER_DROP.into()),
         ("sptfra_summary", "LINE_FRACTION", line::LINE_FRACTION.into()),
         ("sptfra_summary", "INVERSE_GAIN", inverse_gain()),
         ("sptfra_summary", "ONE", one),

@@ -6,7 +6,7 @@
 //!
 //! | program | products | result |
 //! |---|---|---|
-//! | weights, coefficients | `C33inv b` | parted into `\|w\|` and `y+` |
+//! | weights, coefficients | `C33inv b` | separated into `\|w\|` and `y+` |
 //! | | `-K1 \|w\|`, `-K0 y+` with all sums `G_pq`, `-K2 \|w\|` | `u1, u0, u2` |
 //! | residual | `C33 y+`, `-C31 \|w\|`, `-C32 \|w\|` | what of `r` each friction component brings |
 //! | field | `r`, then `A1 r, A2 r, A3 r` | the forces, but for the weights' own share |

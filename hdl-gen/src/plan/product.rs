@@ -45,7 +45,7 @@ pub enum Block {
     Op,
 }
 
-/// Fewest cycles from taking one result to taking the next: both halves of a parted one are written.
+/// Fewest cycles from taking one result to taking the next: both halves of a separated one are written.
 pub fn spacing(epilogue: Epilogue) -> u64 {
     if epilogue == Epilogue::Part { 2 } else { 1 }
 }

@@ -192,10 +192,10 @@ fn collect(products: &[Product], slots: &[WriteBackSlot], pes: &mut [Pe], sums: 
     for slot in slots {
         let held = pes[slot.pe as usize].results.pop_front().expect("a result for every slot");
         // As soon as it is there and the collector is free, which is what the hardware does. After a result that is
-        // parted the collector waits a cycle.
+        // separated the collector waits a cycle.
         assert_eq!(slot.cycle, held.from.max(free), "product {} row {}", slot.product, slot.row);
-        let parted = products[slot.product as usize].epilogue == Epilogue::Part;
-        free = slot.cycle + if parted { 2 } else { 1 };
+        let separated = products[slot.product as usize].epilogue == Epilogue::Part;
+        free = slot.cycle + if separated { 2 } else { 1 };
         taken[slot.pe as usize].push((held.from, slot.cycle));
         assert!(sums.insert((slot.product, slot.row), held.sums).is_none(), "one result a row");
     }

@@ -41,8 +41,8 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
     let late_settled = late("settled", "(state == MEASURE)");
     let cases = [
         // The collector does not keep up with the lanes.
-        (paper(), "sptfra_spmv_collector", "slot_known && !parted", "slot_known && parted", "spmv_pe.v"),
-        (reduced(), "sptfra_spmv_collector", "slot_known && !parted", "slot_known && parted", "spmv_pe.v"),
+        (paper(), "sptfra_spmv_collector", "slot_known && !separated", "slot_known && separated", "spmv_pe.v"),
+        (reduced(), "sptfra_spmv_collector", "slot_known && !separated", "slot_known && separated", "spmv_pe.v"),
         // A program begins before the one before has put out its results.
         (
             reduced(),

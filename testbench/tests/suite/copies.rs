@@ -85,17 +85,17 @@ fn each_lane_and_cell_has_its_own() {
     let mut line = by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field);
     line.hardware.lanes = 8;
     let joint = with_joint(line.clone());
-    let of_lanes = ["pe.base_2"];
-    let of_cells = ["hinges.element_1", "hinges.element_2", "hinges.element_3"];
+    let of_pes = ["pe.base_2"];
+    let of_cells = ["rectifiers.element_1", "rectifiers.element_2", "rectifiers.element_3"];
     // A flag of a leaf core, and what becomes a register of the multiplier.
-    let of_none = ["lane.row_sequencer.primes"];
-    let factor = ["hinges.factor_1", "hinges.multiplier.coefficient"];
+    let of_none = ["pe.row_sequencer.primes"];
+    let factor = ["rectifiers.factor_1", "rectifiers.multiplier.coefficient"];
     for (design, copies, free) in [(line, &of_cells[..], &factor[..]), (joint, &OF_POINTS[..], &[][..])] {
         let names = |parts: &[&[&str]]| -> BTreeSet<String> {
             parts.iter().flat_map(|part| part.iter().map(|&name| name.to_owned())).collect()
         };
         let left = names(&[&of_none, free]);
         assert_eq!(shared(&design, true), left);
-        assert_eq!(shared(&design, false), names(&[&of_lanes, copies, &of_none, free]));
+        assert_eq!(shared(&design, false), names(&[&of_pes, copies, &of_none, free]));
     }
 }

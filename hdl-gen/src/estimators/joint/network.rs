@@ -16,7 +16,7 @@ pub const INPUT_FRACTION: u32 = 19;
 pub const STRESS_BITS: u32 = 25;
 /// Width of an input, a folded value of the window: four of them added.
 pub const INPUT_BITS: u32 = STRESS_BITS + 2;
-/// Width of a hidden unit's sum before the hinge.
+/// Width of a hidden unit's sum before the rectifier.
 pub const UNIT_BITS: u32 = 26;
 /// Fewest words of a pass beyond its units: while it lasts, those of the pass before are read out one by one.
 const LENGTH_OVER_UNITS: usize = 4;

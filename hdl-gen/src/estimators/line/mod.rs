@@ -25,7 +25,7 @@ pub const LINE_FRACTION: u32 = 15;
 /// Significant bits of the sums `G_pq` in the line equation.
 pub const LINE_SUM_BITS: u32 = 17;
 /// Bits dropped from `alpha + t beta` before summing, where `B(t)` is wanted.
-pub const HINGE_DROP: u32 = 8;
+pub const RECTIFIER_DROP: u32 = 8;
 /// The level set lies below `B_min + 2^-LEVEL_SHIFT sum |b|`.
 pub const LEVEL_SHIFT: i32 = 9;
 /// Bisections of the search variable, for the minimum and for each end of the level set.
@@ -54,7 +54,7 @@ impl LinePlan {
     pub fn new(config: &Config) -> Self {
         let groups = (config.design.hardware.lanes.min(MOST_CELLS) / config.channels).max(1);
         let per_cell = config.elements.div_ceil(groups).next_power_of_two();
-        let hinge_lsb = config.u.lsb - FRICTION_FRACTION as i32 + HINGE_DROP as i32;
+        let rectifier_lsb = config.u.lsb - FRICTION_FRACTION as i32 + RECTIFIER_DROP as i32;
         let pitch_mm = config.design.sensor.pitch_mm;
         let larger = pitch_mm[0].max(pitch_mm[1]);
         let one = f64::from(1_u32 << PITCH_FRACTION);
@@ -65,7 +65,7 @@ impl LinePlan {
             } else {
                 1
             },
-            level_shift: config.stress.lsb - LEVEL_SHIFT - hinge_lsb,
+            level_shift: config.stress.lsb - LEVEL_SHIFT - rectifier_lsb,
             pitch: pitch_mm.map(|pitch| (pitch / larger * one).round() as i64),
         }
     }

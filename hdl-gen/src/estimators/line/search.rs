@@ -4,7 +4,7 @@ use golden::products::ByPq;
 
 use super::super::{Estimate, Inputs};
 use super::direction::Direction;
-use super::{HINGE_DROP, LINE_FRACTION, LINE_SUM_BITS, LinePlan, SEARCH_STEPS};
+use super::{LINE_FRACTION, LINE_SUM_BITS, LinePlan, RECTIFIER_DROP, SEARCH_STEPS};
 use crate::cores::{LONG_BITS, divider};
 use crate::plan::format::{FRICTION_BITS, FRICTION_FRACTION, largest, round_shift};
 
@@ -54,7 +54,7 @@ fn ratio(numerator: i64, denominator: i64) -> Option<i64> {
 /// Finds the friction on the line of the push.
 pub fn friction(plan: &LinePlan, inputs: &Inputs) -> Estimate {
     let line = Line::new(inputs.sums, &Direction::new(inputs, plan.pitch));
-    let Optimum { t, at_bound, saturated } = search(&Hinges::new(&line, inputs.u), inputs.contact.stress_sum, plan);
+    let Optimum { t, at_bound, saturated } = search(&Rectifiers::new(&line, inputs.u), inputs.contact.stress_sum, plan);
     let exact = round_shift((line.c0 << FRICTION_FRACTION) + line.c1 * t, LINE_FRACTION);
     let dependent = exact.clamp(-largest(FRICTION_BITS) - 1, largest(FRICTION_BITS));
     let friction = match (line.unknown, line.x_is_free) {
@@ -77,19 +77,19 @@ pub struct Optimum {
 }
 
 /// Searches for the minimum of `B(t)` and for both ends of its level set, in the hardware's steps.
-fn search(hinges: &Hinges, stress_sum: i64, plan: &LinePlan) -> Optimum {
-    let low = distance(|distance| hinges.slope(distance - ONE) < 0) - ONE;
+fn search(rectifiers: &Rectifiers, stress_sum: i64, plan: &LinePlan) -> Optimum {
+    let low = distance(|distance| rectifiers.slope(distance - ONE) < 0) - ONE;
     let high = low + 1;
-    let (at_low, at_high) = (hinges.value(low), hinges.value(high));
+    let (at_low, at_high) = (rectifiers.value(low), rectifiers.value(high));
     let (lowest, floor) = if at_high < at_low { (high, at_high) } else { (low, at_low) };
     let margin = match plan.level_shift {
         shift if shift >= 0 => stress_sum << shift,
         shift => stress_sum >> -shift,
     };
-    let below = |t| hinges.value(t) <= floor + margin;
+    let below = |t| rectifiers.value(t) <= floor + margin;
     let left = lowest - distance(|distance| distance < lowest + ONE && below(lowest - distance));
     let right = lowest + distance(|distance| distance < ONE - lowest && below(lowest + distance));
-    Optimum { t: (left + right) >> 1, at_bound: low == -ONE || high == ONE, saturated: hinges.saturated }
+    Optimum { t: (left + right) >> 1, at_bound: low == -ONE || high == ONE, saturated: rectifiers.saturated }
 }
 
 /// The largest distance of those before which all are kept, by bisection: bit by bit, the highest first.
@@ -101,12 +101,12 @@ fn distance(keep: impl Fn(i64) -> bool) -> i64 {
 }
 
 /// `alpha_i + t beta_i` for every taxel.
-struct Hinges {
+struct Rectifiers {
     lines: Vec<(i64, i64)>,
     saturated: bool,
 }
 
-impl Hinges {
+impl Rectifiers {
     fn new(line: &Line, u: &[Vec<i64>; 3]) -> Self {
         let [fixed, x, y] = u;
         let (free, dependent) = if line.x_is_free { (x, y) } else { (y, x) };
@@ -124,8 +124,8 @@ impl Hinges {
     }
 
     fn positive(&self, t: i64) -> impl Iterator<Item = (i64, i64)> + '_ {
-        let hinge = move |&(alpha, beta): &(i64, i64)| ((alpha << FRICTION_FRACTION) + t * beta, beta);
-        self.lines.iter().map(hinge).filter(|&(hinge, _)| hinge > 0)
+        let rectifier = move |&(alpha, beta): &(i64, i64)| ((alpha << FRICTION_FRACTION) + t * beta, beta);
+        self.lines.iter().map(rectifier).filter(|&(rectifier, _)| rectifier > 0)
     }
 
     fn slope(&self, t: i64) -> i64 {
@@ -133,7 +133,7 @@ impl Hinges {
     }
 
     fn value(&self, t: i64) -> i64 {
-        self.positive(t).map(|(hinge, _)| hinge >> HINGE_DROP).sum()
+        self.positive(t).map(|(rectifier, _)| rectifier >> RECTIFIER_DROP).sum()
     }
 }
 
@@ -144,18 +144,18 @@ mod tests {
 
     #[test]
     fn bisections_find_ends_and_flat_valleys() {
-        let hinges = |lines: &[(i64, i64)]| Hinges { lines: lines.to_vec(), saturated: false };
-        // No hinge at all; one that rises, one that falls throughout; a valley between both.
+        let rectifiers = |lines: &[(i64, i64)]| Rectifiers { lines: lines.to_vec(), saturated: false };
+        // No rectifier at all; one that rises, one that falls throughout; a valley between both.
         let valley = [(-1 << 19, 1 << 20), (-1 << 19, -1 << 20)];
         let cases = [
-            (hinges(&[]), 0, true),
-            (hinges(&[(1 << 24, 1 << 22)]), -ONE, true),
-            (hinges(&[(1 << 24, -1 << 22)]), ONE, true),
-            (hinges(&valley), 0, false),
+            (rectifiers(&[]), 0, true),
+            (rectifiers(&[(1 << 24, 1 << 22)]), -ONE, true),
+            (rectifiers(&[(1 << 24, -1 << 22)]), ONE, true),
+            (rectifiers(&valley), 0, false),
         ];
-        for (hinges, t, at_bound) in cases {
+        for (rectifiers, t, at_bound) in cases {
             let cells = Cells { cells: 28, elements: 4 };
-            let of = search(&hinges, 0, &LinePlan { cells, points: 1, level_shift: -1, pitch: [1 << 16; 2] });
+            let of = search(&rectifiers, 0, &LinePlan { cells, points: 1, level_shift: -1, pitch: [1 << 16; 2] });
             assert!((of.t - t).abs() <= 1 && of.at_bound == at_bound, "{of:?} for {t}");
         }
     }

@@ -21,7 +21,7 @@ fn dense_matrices_keep_all_lanes_busy() {
     }
 }
 
-/// A quarter of the taxels, a quarter of the lanes, rows a quarter as long; what is left to wait for is the parted
+/// A quarter of the taxels, a quarter of the lanes, rows a quarter as long; what is left to wait for is the separated
 /// result, two cycles each.
 #[test]
 fn dense_blocks_keep_all_pes_busy() {

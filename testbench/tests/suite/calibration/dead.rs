@@ -133,7 +133,7 @@ fn a_map_of_another_bank_is_noticed() {
     let interval = subject.plan.timeline.interval_cycles;
     let faults = [
         ("sptfra_bz", ".bank           (bank_held)", ".bank           (active)"),
-        ("sptfra_bz", "calibration_acting[66:59], replaced}", "calibration_acting[66:59], 4'd1}"),
+        ("sptfra_bz", "active_calibration[66:59], replaced}", "active_calibration[66:59], 4'd1}"),
     ];
     for (module, from, to) in some_faults(faults, |&(module, from, ..)| (module, from)) {
         let built = broken(&subject.plan, module, from, to);

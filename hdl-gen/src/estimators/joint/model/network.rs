@@ -1,4 +1,4 @@
-//! The network of hinges in integers.
+//! The network of rectifiers in integers.
 
 use golden::parity::CLASSES;
 
@@ -16,7 +16,7 @@ pub fn correction(network: &NetworkPlan, inputs: &[[i64; CLASSES]]) -> [i64; 2] 
                 round_shift(sum, network.unit_shift)
             };
             let [a, b, c, d] = std::array::from_fn(component);
-            // Of the four mirror images, then their hinges, mirrored back.
+            // Of the four mirror images, then their rectifiers, mirrored back.
             let images = [a + b + c + d, a - b + c - d, a + b - c - d, a - b - c + d];
             let [a, b, c, d] = images.map(|sum| sum.max(0));
             sums[0] += i64::from(readout[0]) * (a - b + c - d);

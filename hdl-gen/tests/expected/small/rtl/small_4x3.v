@@ -187,7 +187,7 @@ module small_4x3 #(
         .frame_start      (start[0]),
         .frame_release    (coefficients_complete),
         .smoothing        (4'd0),
-        .calibration_acting     (68'd0),
+        .active_calibration     (68'd0),
         .calibration_old_in_use (calibration_old_in_use),
         .bank_command           (1'b0),
         .bank_words             (bank_words),
