@@ -1,4 +1,4 @@
-//! Largest magnitudes, middles and roundings of values.
+//! Largest magnitudes, middles, correlations and roundings of values.
 
 use std::borrow::Borrow;
 
@@ -18,6 +18,16 @@ pub(crate) fn sorted(values: impl IntoIterator<Item: Borrow<f64>>) -> Vec<f64> {
 pub(crate) fn middle(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
     let sorted = sorted(values);
     sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Correlation of the values in pairs; 0 where either are all the same.
+pub(crate) fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
+    let [count, a, b] = pairs.clone().fold([0.0; 3], |[count, a, b], (x, y)| [count + 1.0, a + x, b + y]);
+    let [product, xx, yy] = pairs.fold([0.0; 3], |[product, xx, yy], (x, y)| {
+        let [x, y] = [x - a / count, y - b / count];
+        [product + x * y, xx + x * x, yy + y * y]
+    });
+    if xx * yy > 0.0 { product / (xx * yy).sqrt() } else { 0.0 }
 }
 
 /// To so many significant digits.

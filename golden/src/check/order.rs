@@ -69,23 +69,20 @@ pub(super) fn check(design: &Design, matrices: &Matrices, loaded: &[Vec<f64>]) -
     }
     let pulls = |order: Order| pulls(sensor, &inverse, &frames, order);
     let found = pulls(|sensor, ix, iy| iy * sensor.columns + ix);
-    if found < FEW {
-        return None;
-    }
-    if found < SUSPICIOUS {
-        let far_better = |&(other, _): &(f64, &str)| other < FAR_BETTER * found;
-        return OTHERS.map(|(order, cause)| (pulls(order), cause)).into_iter().find(far_better).map(explained(found));
-    }
+    let is_suspicious = found >= SUSPICIOUS;
     // Of good frames of this sensor, which the deeper it is say the less.
-    let usual = MORE * usual(design, &inverse);
+    let usual = if is_suspicious { MORE * usual(design, &inverse) } else { FEW };
     if found < usual {
         return None;
     }
-    for (order, cause) in OTHERS {
-        let other = pulls(order);
-        if other < BETTER * found {
-            return Some(explained(found)((other, cause)));
-        }
+    let share = if is_suspicious { BETTER } else { FAR_BETTER };
+    let better = |(other, _): &(f64, &str)| *other < share * found;
+    if let Some((other, cause)) = OTHERS.map(|(order, cause)| (pulls(order), cause)).into_iter().find(better) {
+        return Some(format!(
+            "the normal forces alternate, {:.0} % of them pull, as if the frames held {cause} (which would leave {:.0} %)",
+            100.0 * found,
+            100.0 * other
+        ));
     }
     (found > ALTERNATING).then(|| {
         let percent = 100.0 * found;
@@ -160,17 +157,6 @@ fn alike(sensor: &Sensor, frames: &[&Vec<f64>], order: Order) -> f64 {
         together(sensor, &(0..sensor.taxels()).map(taxel).collect::<Vec<_>>())
     };
     frames.iter().map(place).sum::<f64>() / frames.len().max(1) as f64
-}
-
-/// What is to be said of frames with so large a share of pulls, of which another order leaves so many.
-fn explained(found: f64) -> impl Fn((f64, &str)) -> String {
-    move |(other, cause)| {
-        format!(
-            "the normal forces alternate, {:.0} % of them pull, as if the frames held {cause} (which would leave {:.0} %)",
-            100.0 * found,
-            100.0 * other
-        )
-    }
 }
 
 /// The share of pulls of a contact that suits the sensor, with noise; 0 if there is none.

@@ -59,29 +59,20 @@ pub(super) fn range(design: &Design, peak: f64) -> Option<String> {
     let (counts, full_scale) = (design.input.counts(), design.hardware.full_scale_pa);
     let Scale { key, size, .. } = Scale::of(design);
     let what = if counts { "stress" } else { "reading" };
-    if peak * TOO_SMALL <= full_scale {
-        let times = full_scale / peak;
-        let cause = if counts {
-            format!("is a count worth more? Change {size}")
-        } else {
-            "kilopascals, or counts? Change the unit of the frames, or write sensor.pa_per_count,".to_owned()
-        };
-        return Some(format!(
-            "the largest {what} is {peak:.3} Pa, {times:.0} times below hardware.full_scale_pa: {cause} or \
-             hardware.full_scale_pa"
-        ));
-    }
-    (peak >= TOO_LARGE * full_scale).then(|| {
-        let times = peak / full_scale;
-        let cause = if counts {
-            let it = if size == key { "it" } else { size };
-            format!("are the frames in pascals already? Remove {key}; if not, change {it}")
-        } else {
-            "counts? Change the unit of the frames, or write sensor.pa_per_count,".to_owned()
-        };
-        format!(
-            "the largest {what} is {peak:.0} Pa, {times:.0} times above hardware.full_scale_pa: {cause} or \
-             hardware.full_scale_pa"
-        )
-    })
+    let unit = |what: &str| format!("{what}? Change the unit of the frames, or write sensor.pa_per_count,");
+    let (times, side, digits, cause) = if peak * TOO_SMALL <= full_scale {
+        let cause =
+            if counts { format!("is a count worth more? Change {size}") } else { unit("kilopascals, or counts") };
+        (full_scale / peak, "below", 3, cause)
+    } else if peak >= TOO_LARGE * full_scale {
+        let it = if size == key { "it" } else { size };
+        let already = || format!("are the frames in pascals already? Remove {key}; if not, change {it}");
+        (peak / full_scale, "above", 0, if counts { already() } else { unit("counts") })
+    } else {
+        return None;
+    };
+    Some(format!(
+        "the largest {what} is {peak:.digits$} Pa, {times:.0} times {side} hardware.full_scale_pa: {cause} or \
+         hardware.full_scale_pa"
+    ))
 }

@@ -1,7 +1,7 @@
 //! Files that people give for frames, and that are none.
 
 /// How the first bytes of a file begin, what it then is, and what to do.
-const OTHERS: [(&[u8], &str, &str); 14] = [
+const OTHERS: [(&[u8], &str, &str); 13] = [
     (
         b"PK\x03\x04",
         "an archive, as numpy.savez (.npz) and spreadsheets (.xlsx) make them",
@@ -21,8 +21,7 @@ const OTHERS: [(&[u8], &str, &str); 14] = [
         "a database of SQLite",
         "save the table as CSV: sqlite3 -header -csv FILE \"select * from TABLE\"",
     ),
-    (b"\x80\x04\x95", "a pickle of Python", "load it and save the array with numpy.save"),
-    (b"\x80\x03", "a pickle of Python", "load it and save the array with numpy.save"),
+    (b"\x80", "a pickle of Python", "load it and save the array with numpy.save"),
     (b"\xd0\xcf\x11\xe0", "a spreadsheet (.xls)", "save the sheet as CSV"),
 ];
 

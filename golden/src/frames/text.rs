@@ -30,8 +30,9 @@ pub(super) struct Text {
 }
 
 /// What has been read of a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum State {
+    #[default]
     Begin,
     /// A line of names.
     Header,
@@ -39,7 +40,7 @@ enum State {
 }
 
 /// Reads lines one after the other; of each the columns of the values.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Lines {
     /// Where they come from, for messages.
     path: PathBuf,
@@ -70,23 +71,7 @@ pub(super) struct Lines {
 
 impl Lines {
     pub(super) fn new(path: &Path, layout: &Layout, target: Option<&Target>) -> Self {
-        Self {
-            path: path.to_path_buf(),
-            layout: layout.clone(),
-            target: target.cloned(),
-            separator: None,
-            state: State::Begin,
-            heads: Vec::new(),
-            header: Header::default(),
-            comments: Vec::new(),
-            block: None,
-            number: 0,
-            marks: Marks::default(),
-            padded: None,
-            too_long: None,
-            bad: None,
-            remarks: Vec::new(),
-        }
+        Self { path: path.to_path_buf(), layout: layout.clone(), target: target.cloned(), ..Self::default() }
     }
 
     /// Where the lines come from.

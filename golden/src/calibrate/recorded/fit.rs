@@ -1,7 +1,5 @@
 //! Curve and gains from holds, in turns, each with the other as it is.
 
-use nalgebra::DMatrix;
-
 use super::folds::Folds;
 use super::gains::{Evidence, NOISES, Prior, RANGES, Shares};
 use super::holds::Holds;
@@ -9,6 +7,7 @@ use super::readings::Readings;
 use super::rows::Rows;
 use super::shape::{self, Kind, Own, Shape, Terms};
 use crate::design::Design;
+use crate::numbers::correlation;
 
 /// Loads below this share of the largest count as that much: their relative error is the scale's.
 const LIGHT: f64 = 0.1;
@@ -154,10 +153,8 @@ impl<'a> Work<'a> {
     fn validate_kind(&self, kind: Kind, weights: &[Vec<f64>], folds: &Folds) -> Validated {
         let x = self.x();
         let terms = self.terms(weights, &x);
-        let errors = (0..folds.count).flat_map(|part| {
-            let [kept, left] = folds.part(part);
-            self.errors(&shape::fit(kind, &terms, &kept), weights, &left)
-        });
+        let errors =
+            folds.parts().flat_map(|[kept, left]| self.errors(&shape::fit(kind, &terms, &kept), weights, &left));
         self.figure(errors.collect())
     }
 
@@ -215,8 +212,7 @@ impl<'a> Work<'a> {
         for range in RANGES {
             let field = shares.with(&self.design.sensor, range);
             for noise in NOISES {
-                let errors = (0..folds.count).flat_map(|part| {
-                    let [kept, left] = folds.part(part);
+                let errors = folds.parts().flat_map(|[kept, left]| {
                     let loads = shares.loads(&field.fit(&kept, &wanted, noise));
                     left.into_iter().map(move |hold| (hold, loads[hold] - 1.0))
                 });
@@ -293,8 +289,7 @@ impl<'a> Work<'a> {
 
     /// The errors at what was left out while everything was fitted to the rest.
     pub(super) fn validate(&self, kind: Kind, prior: Option<Prior>, folds: &Folds) -> Validated {
-        let errors = (0..folds.count).flat_map(|part| {
-            let [kept, left] = folds.part(part);
+        let errors = folds.parts().flat_map(|[kept, left]| {
             let mut delta = vec![0.0; self.before.len()];
             let mut shape = self.fit_shape(kind, &delta, &kept);
             if let Some(prior) = prior {
@@ -311,9 +306,8 @@ impl<'a> Work<'a> {
     /// How far the gains differ (standard deviation), and how far those from one half of the parts differ from those of
     /// the other (root mean square over the square root of two).
     pub(super) fn halves(&self, found: &Found, prior: Prior, folds: &Folds) -> [f64; 2] {
-        let half = |odd: usize| -> Vec<usize> {
-            (0..folds.count).filter(|part| part % 2 == odd).flat_map(|part| folds.part(part)[1].clone()).collect()
-        };
+        let half =
+            |odd: usize| -> Vec<usize> { folds.parts().skip(odd).step_by(2).flat_map(|[_, left]| left).collect() };
         let [a, b] = [0, 1].map(|odd| self.fit_gains(&found.shape, prior, &half(odd)));
         let touched: Vec<usize> = (0..a.len()).filter(|&taxel| found.delta[taxel] != 0.0).collect();
         let rms = |of: &dyn Fn(usize) -> f64| {
@@ -331,16 +325,7 @@ impl<'a> Work<'a> {
 
     /// Whether what is found goes with the loads: their correlation.
     pub(super) fn follows(&self, found: &Found) -> f64 {
-        let found: Vec<f64> =
-            self.fitted(found).errors.iter().zip(&self.loads).map(|(error, load)| load * (1.0 + error)).collect();
-        let matrix = DMatrix::from_columns(&[found.into(), self.loads.clone().into()]);
-        let mean = matrix.row_mean();
-        let (mut among, mut squares) = (0.0, [0.0; 2]);
-        for row in matrix.row_iter() {
-            let [a, b] = [row[0] - mean[0], row[1] - mean[1]];
-            among += a * b;
-            squares = [squares[0] + a * a, squares[1] + b * b];
-        }
-        if squares.iter().all(|&square| square > 0.0) { among / (squares[0] * squares[1]).sqrt() } else { 0.0 }
+        let errors = self.fitted(found).errors;
+        correlation(errors.iter().zip(&self.loads).map(|(error, load)| (load * (1.0 + error), *load)))
     }
 }

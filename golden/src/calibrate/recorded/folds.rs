@@ -15,7 +15,7 @@ const SAME_LOAD: f64 = 1.15;
 pub(super) struct Folds {
     /// The part of each hold.
     of: Vec<usize>,
-    pub(super) count: usize,
+    count: usize,
     /// What the groups are, for people.
     pub(super) what: &'static str,
     pub(super) groups: usize,
@@ -49,10 +49,12 @@ impl Folds {
         })
     }
 
-    /// The holds to fit to and those left out.
-    pub(super) fn part(&self, part: usize) -> [Vec<usize>; 2] {
-        let (left, kept) = (0..self.of.len()).partition(|&hold| self.of[hold] == part);
-        [kept, left]
+    /// For each part, the holds to fit to and those left out.
+    pub(super) fn parts(&self) -> impl Iterator<Item = [Vec<usize>; 2]> {
+        (0..self.count).map(|part| {
+            let (left, kept) = (0..self.of.len()).partition(|&hold| self.of[hold] == part);
+            [kept, left]
+        })
     }
 }
 

@@ -52,7 +52,6 @@ pub(super) fn fit(
             FEWEST[0]
         ));
     };
-    let parts: Vec<[Vec<usize>; 2]> = (0..folds.count).map(|part| folds.part(part)).collect();
     let samples = match samples(design, holds, stresses, &dragged) {
         Ok(samples) => samples,
         Err(CalibrateError::Solver(error)) => return Err(error.into()),
@@ -60,7 +59,7 @@ pub(super) fn fit(
     };
     let within =
         |part: &[usize]| -> Vec<usize> { (0..samples.len()).filter(|&s| part.contains(&samples[s].hold)).collect() };
-    let parts: Vec<[Vec<usize>; 2]> = parts.iter().map(|[kept, left]| [within(kept), within(left)]).collect();
+    let parts: Vec<[Vec<usize>; 2]> = folds.parts().map(|part| part.map(|holds| within(&holds))).collect();
     if samples.len() < FEWEST[0] || parts.iter().filter(|[_, left]| !left.is_empty()).count() < FEWEST[1] {
         return not(format!("{} holds at too few places or loads have an answer; its constants stay", samples.len()));
     }

@@ -1,5 +1,7 @@
 //! The lag between two logs that do not begin together, by cross-correlation of the readings' sum with the load.
 
+use crate::numbers::correlation;
+
 /// A lag is used only if it explains this share of the variance.
 const EXPLAINS: f64 = 0.7;
 /// A share of the variance that rounding alone leaves.
@@ -68,26 +70,10 @@ impl Lags {
 
 /// The share of the readings' variance that a straight line of the loads leaves, if these come `lag` frames late.
 fn unexplained(readings: &[f64], loads: &[Option<f64>], lag: isize) -> f64 {
-    let pairs = || {
-        let skip = |late: isize| usize::try_from(late).unwrap_or(0);
-        let lines = loads.iter().skip(skip(lag));
-        readings.iter().skip(skip(-lag)).zip(lines).filter_map(|(&reading, load)| Some((reading, (*load)?)))
-    };
-    let (mut count, mut sums) = (0.0, [0.0; 2]);
-    for (reading, load) in pairs() {
-        count += 1.0;
-        sums[0] += reading;
-        sums[1] += load;
-    }
-    let means = sums.map(|sum| sum / count);
-    let (mut squares, mut product) = ([0.0; 2], 0.0);
-    for (reading, load) in pairs() {
-        let [a, b] = [reading - means[0], load - means[1]];
-        squares[0] += a * a;
-        squares[1] += b * b;
-        product += a * b;
-    }
-    if squares[0] * squares[1] > 0.0 { 1.0 - product * product / (squares[0] * squares[1]) } else { 1.0 }
+    let skip = |late: isize| usize::try_from(late).unwrap_or(0);
+    let lines = loads.iter().skip(skip(lag));
+    let pairs = readings.iter().skip(skip(-lag)).zip(lines).filter_map(|(&reading, load)| Some((reading, (*load)?)));
+    1.0 - correlation(pairs).powi(2)
 }
 
 #[cfg(test)]

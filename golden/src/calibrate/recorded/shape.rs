@@ -153,7 +153,7 @@ pub(super) fn fit(kind: Kind, terms: &Terms<'_>, holds: &[usize]) -> Shape {
                     powered(x / largest + from, power, STRAIGHT) - powered(from, power, STRAIGHT)
                 })
             };
-            let log = golden_section(POWERS.map(f64::ln), |log| law(log.exp()).1);
+            let log = minimum(POWERS.map(f64::ln), |log| law(log.exp()).1);
             let power = log.exp();
             Shape::Power { power, scale: law(power).0 / largest.powf(power), straight: STRAIGHT * largest }
         }
@@ -213,21 +213,11 @@ fn non_negative(normal: &DMatrix<f64>, right: &DVector<f64>, start: f64, least: 
     found.as_slice().to_vec()
 }
 
-/// Where a function of one minimum has it.
-fn golden_section([mut low, mut high]: [f64; 2], f: impl Fn(f64) -> f64) -> f64 {
-    let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let mut inner = [high - ratio * (high - low), low + ratio * (high - low)];
-    let mut values = inner.map(&f);
+/// Where a function of one minimum has it, by ternary search.
+fn minimum([mut low, mut high]: [f64; 2], f: impl Fn(f64) -> f64) -> f64 {
     while high - low > 1e-4 {
-        if values[0] < values[1] {
-            high = inner[1];
-            inner = [high - ratio * (high - low), inner[0]];
-            values = [f(inner[0]), values[0]];
-        } else {
-            low = inner[0];
-            inner = [inner[1], low + ratio * (high - low)];
-            values = [values[1], f(inner[1])];
-        }
+        let third = (high - low) / 3.0;
+        if f(low + third) < f(high - third) { high -= third } else { low += third }
     }
     0.5 * (low + high)
 }

@@ -208,8 +208,7 @@ impl<'a> Uniform<'a> {
 
     /// The same where pressures are left out in turn.
     fn validate(&self, kind: Kind, folds: &Folds) -> Vec<f64> {
-        let errors = (0..folds.count).flat_map(|part| {
-            let [kept, left] = folds.part(part);
+        let errors = folds.parts().flat_map(|[kept, left]| {
             let (shape, gains) = self.fit(kind, &kept);
             self.errors(&shape, &gains, &left)
         });
