@@ -210,6 +210,22 @@ report: tools build ## Speed against error: target/sweep/report.html, a page to 
 report-full: tools build ## The same over every combination of filters, plans, widths and lanes: thousands of points
 	@$(BIN)/sptfra sweep $(SWEEP_DESIGNS) --scene $(SWEEP_SCENES) --out $(SWEEP_FOLDER) --full
 
+FAST          := $(addprefix designs/,sensor1-fast.toml sensor2-fast.toml)
+WIDE          := $(addprefix designs/,sensor1-wide.toml sensor2-wide.toml)
+CLIPPED       := designs/sensor1-clipped-wide.toml $(TEST_DESIGNS)/sensor2-clipped-wide.toml
+
+.PHONY: tables
+tables: tools ## Measure every table of errors anew, into results/ (an hour)
+	@$(CARGO) build --quiet --release -p xtask
+	@$(XTASK_RELEASE) study noise $(FAST) designs/sensor1-fast-64.toml \
+	    designs/sensor1-fast-100.toml $(WIDE) $(CLIPPED) --out results/noise.csv
+	@$(XTASK_RELEASE) study smoothing $(WIDE) --out results/smoothing.csv
+	@$(XTASK_RELEASE) study confidence $(FAST) $(WIDE) --out results/confidence.csv
+	@$(XTASK_RELEASE) study drift designs/sensor1-fast.toml designs/sensor1-wide.toml --out results/drift.csv
+	@$(CARGO) test -p sptfra-golden --test suite -- --ignored table clipped::families recorded::figures
+	@$(CARGO) test -p sptfra-testbench --test suite -- --ignored count_contacts::table
+	@python3 tools/plots.py
+
 .PHONY: corner-cases
 corner-cases: tools ## Sensors, contacts and frames at the limits, all through the RTL (minutes): results/corner-cases.csv
 	@$(XTASK) corner-cases > $(TARGET)/corner-cases.json

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
+use crate::design::Design;
+
 /// A file that could not be written.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: cannot write the file: {source}; choose another place or make room", path.display())]
@@ -37,6 +39,24 @@ pub fn print_text(text: &str) -> io::Result<()> {
 /// When the folder does not exist or cannot be written, or `path` is a folder.
 pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), OutputError> {
     replace(path, content).map_err(|source| OutputError { path: path.to_path_buf(), source })
+}
+
+/// Writes the rows of a measured table in place of the old ones, below the names of its columns. Its lines of comment say
+/// what the rows are and stay; that of the designs is made anew, each with its name and hash.
+///
+/// # Errors
+///
+/// As [`write_whole`].
+pub fn renew_table(path: &Path, designs: &[(String, Design)], columns: &str, rows: &str) -> Result<(), OutputError> {
+    const DESIGNS: &str = "# designs: ";
+    let old = std::fs::read_to_string(path).unwrap_or_default();
+    let about = old.lines().take_while(|line| line.starts_with('#')).filter(|line| !line.starts_with(DESIGNS));
+    let mut text: String = about.flat_map(|line| [line, "\n"]).collect();
+    if !designs.is_empty() {
+        let hashes: Vec<String> = designs.iter().map(|(name, design)| format!("{name} {}", design.hash())).collect();
+        text.extend([DESIGNS, &hashes.join(", "), "\n"]);
+    }
+    write_whole(path, format!("{text}{columns}\n{rows}").as_bytes())
 }
 
 /// Writes several files, each in place of what was there: all of them or none.

@@ -6,7 +6,6 @@ use std::ops::Range;
 use golden::design::Design;
 use golden::scene::Kind;
 use golden::solver::{Solver, Status};
-use hdl_gen::emit::resolved_hash;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -28,27 +27,16 @@ struct Frame {
     low: bool,
 }
 
+/// The columns of [`rows`].
+pub const COLUMNS: &str = "design,noise,kind,within_one,within_two,low,least,most";
+
 /// The table of some designs, which go by the names of their files.
 ///
 /// # Errors
 ///
 /// [`NoiseError`]: a sensor without matrices or scenes.
-pub fn csv(designs: &[(String, Design)]) -> Result<String, NoiseError> {
-    let hashes: Vec<String> =
-        designs.iter().map(|(name, design)| format!("{name} {}", resolved_hash(design))).collect();
-    let mut text = format!(
-        "# Standard error against error of the tangential force, by the f64 solver, by noise and kind of contact.\n\
-         # {} contacts of each kind at a friction of {FRICTION}, none of them drawn by a calibration.\n\
-         # noise: standard deviation in percent of the largest reading of a frame; the design states it.\n\
-         # within_one, within_two: percent of frames with an error within one and two standard errors; low: with low confidence.\n\
-         # least, most: root mean square of the errors over mean standard error, of fifths of frames sorted by the latter.\n\
-         # kind inside: all kinds but border, mixed and noisy together.\n\
-         # command: cargo xtask confidence DESIGNS --out results/confidence.csv\n\
-         # designs: {}\n\
-         design,noise,kind,within_one,within_two,low,least,most\n",
-        SEEDS.count(),
-        hashes.join(", ")
-    );
+pub fn rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
+    let mut text = String::new();
     for (name, design) in designs {
         for percent in NOISE_PERCENT {
             let mut told = design.clone();

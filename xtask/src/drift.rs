@@ -8,7 +8,6 @@ use golden::design::Design;
 use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneFrame, normal};
 use golden::solver::Solver;
-use hdl_gen::emit::resolved_hash;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -263,42 +262,16 @@ fn of_contact(
     Ok(found)
 }
 
+/// The columns of [`rows`].
+pub const COLUMNS: &str = "design,readings,correction,seconds,f_z,f_z_p95,f_z_worst,shear,shear_p95,shear_worst,friction,friction_p95,friction_worst";
+
 /// The table of some designs, which go by the names of their files.
 ///
 /// # Errors
 ///
 /// [`NoiseError`]: a sensor without matrices or scenes.
-pub fn csv(designs: &[(String, Design)]) -> Result<String, NoiseError> {
-    let hashes: Vec<String> =
-        designs.iter().map(|(name, design)| format!("{name} {}", resolved_hash(design))).collect();
-    let kinds: Vec<String> = KINDS.iter().map(ToString::to_string).collect();
-    let mut text = format!(
-        "# Errors under constant load while readings creep or offsets drift, by correction, by the f64 solver.\n\
-         # f_z, shear: percent of the true normal force; friction: 100 times the error; median, 95 % and worst.\n\
-         # {} contacts of each kind at a friction of {FRICTION}: {}; noise {NOISE_PERCENT} % of the largest reading.\n\
-         # Another contact is held for {:.0} s before, and released {:.0} s before the touch; the tare is {:.0} s before it.\n\
-         # seconds: since the touch; readings of a taxel under a constant load rise by a third in {WITHIN} s.\n\
-         # creep-S: one relaxation time of {} s; each taxel's strength and time vary by S % (log-normal).\n\
-         # creep-two-S: two of {} and {} s, equally strong; creep-log-S: {} of 0.1 to 1000 s, a decade apart.\n\
-         # creep-curved-S: creep goes with the stress to the power of 0.7; creep-fading-S: it fades three times slower.\n\
-         # drift: offsets drift for {DRIFTED} minutes, each by its own {DRIFT_PERCENT} % of the largest reading a minute (deviation).\n\
-         # baseline: it follows the readings, loaded or not, with a time constant of {BASELINE} s.\n\
-         # constant: creep is removed by one strength and one time for all taxels, found from {STEP_OF_LOAD} s of uniform load.\n\
-         # constant-tare: the same, with the tare of readings without creep.\n\
-         # command: cargo xtask drift DESIGNS --out results/drift.csv\n\
-         # designs: {}\n\
-         design,readings,correction,seconds,f_z,f_z_p95,f_z_worst,shear,shear_p95,shear_worst,friction,friction_p95,friction_worst\n",
-        SEEDS.count(),
-        kinds.join(", "),
-        HELD as f64 * STEP,
-        (PAUSE + TARED) as f64 * STEP,
-        TARED as f64 * STEP,
-        ONE[0],
-        TWO[0],
-        TWO[1],
-        DECADES.len(),
-        hashes.join(", ")
-    );
+pub fn rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
+    let mut text = String::new();
     for (name, design) in designs {
         let solver = Solver::new(design)?;
         let mut frames = Vec::new();

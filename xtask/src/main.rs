@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use sptfra::message;
 
-use commands::{bench, cells, confidence, corner_cases, drift, luts, mutants, noise, solver, stress};
+use commands::{bench, cells, corner_cases, luts, mutants, solver, stress, study};
 
 /// Runs what only developers run.
 #[derive(Parser)]
@@ -24,9 +24,7 @@ enum Command {
     CornerCases(corner_cases::Args),
     Stress(stress::Args),
     Mutants(mutants::Args),
-    Noise(noise::Args),
-    Confidence(confidence::Args),
-    Drift(drift::Args),
+    Study(study::Args),
     Cells(cells::Args),
     Luts(luts::Args),
 }
@@ -38,9 +36,7 @@ fn main() -> ExitCode {
         Command::CornerCases(args) => corner_cases::run(&args),
         Command::Stress(args) => stress::run(&args),
         Command::Mutants(args) => mutants::run(&args),
-        Command::Noise(args) => noise::run(&args),
-        Command::Confidence(args) => confidence::run(&args),
-        Command::Drift(args) => drift::run(&args),
+        Command::Study(args) => study::run(&args),
         Command::Cells(args) => cells::run(&args),
         Command::Luts(args) => luts::run(&args),
     }))

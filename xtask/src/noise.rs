@@ -8,7 +8,6 @@ use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneError, SceneFrame, normal};
 use golden::smoothing::{Average, Smoothing};
 use golden::solver::{Solver, SolverError};
-use hdl_gen::emit::resolved_hash;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -41,6 +40,9 @@ pub enum NoiseError {
     /// A step of load that does not tell creep.
     #[error("{0}")]
     Creep(String),
+    /// Another sensor than the paper's.
+    #[error("{0}: no bound is known; name designs of the paper's sensors")]
+    Bound(String),
 }
 
 /// What the design's sensor reads of stresses in pascals, with noise in percent of the largest reading.
@@ -103,27 +105,19 @@ fn smoothed(design: &Design, frames: &[SceneFrame], percent: f64) -> Result<Vec<
     Ok((0..SMOOTHING.count()).map(|k| Quantiles::of(errors.iter().map(|of| of[k]).collect())).collect())
 }
 
+/// The columns of [`smoothing_rows`].
+pub const SMOOTHING_COLUMNS: &str = "design,noise,k,frames,median,p95,bound";
+
 /// The table of smoothing of some designs of the paper's sensors, each with the bound of its sensor: the median error of the best
 /// estimator over the noise.
 ///
 /// # Errors
 ///
-/// [`NoiseError`]: a sensor without matrices or scenes.
-pub fn smoothing_csv(designs: &[(String, Design, f64)]) -> Result<String, NoiseError> {
-    let hashes: Vec<String> =
-        designs.iter().map(|(name, design, _)| format!("{name} {}", resolved_hash(design))).collect();
-    let mut text = format!(
-        "# Error of the tangential force against smoothing, in percent of the normal force, by the f64 solver.\n\
-         # {} round sliding contacts at a friction of {FRICTION}, each averaged over {FRAMES} frames with their own noise.\n\
-         # k: sensor.smoothing, 0 one frame. frames: so many equally weighted ones have the same noise.\n\
-         # noise: standard deviation in percent of the largest reading of a frame. bound: median of the best unbiased estimator.\n\
-         # command: cargo xtask noise DESIGNS --smoothing --out results/smoothing.csv\n\
-         # designs: {}\n\
-         design,noise,k,frames,median,p95,bound\n",
-        SEEDS.count(),
-        hashes.join(", ")
-    );
-    for (name, design, bound) in designs {
+/// [`NoiseError`]: a sensor without matrices, scenes or bound.
+pub fn smoothing_rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
+    let mut text = String::new();
+    for (name, design) in designs {
+        let bound = bound(design).ok_or_else(|| NoiseError::Bound(name.clone()))?;
         let frames = Kind::Sliding.frames(&design.sensor, FRICTION, SEEDS)?;
         for percent in SMOOTHED_PERCENT {
             for (k, Quantiles { median, most, .. }) in SMOOTHING.zip(smoothed(design, &frames, percent)?) {
@@ -141,30 +135,22 @@ pub fn smoothing_csv(designs: &[(String, Design, f64)]) -> Result<String, NoiseE
 ///
 /// Cramér-Rao bound of such contacts as [`SEEDS`] draws, of unknown place, size, force and direction
 /// (`results/estimator-study.csv`).
-pub fn bound(design: &Design) -> Option<f64> {
+fn bound(design: &Design) -> Option<f64> {
     let bounds = [([4.0, 2.0], 3.66), ([4.0, 4.0], 4.50)];
     let is = |pitch_mm: [f64; 2]| pitch_mm.map(f64::to_bits) == design.sensor.pitch_mm.map(f64::to_bits);
     bounds.into_iter().find(|(pitch_mm, _)| is(*pitch_mm) && design.sensor.taxels() == 100).map(|(_, bound)| bound)
 }
+
+/// The columns of [`rows`].
+pub const COLUMNS: &str = "design,noise,median,p95,worst";
 
 /// The table of some designs, which go by the names of their files.
 ///
 /// # Errors
 ///
 /// [`NoiseError`]: a sensor without matrices or scenes.
-pub fn csv(designs: &[(String, Design)]) -> Result<String, NoiseError> {
-    let hashes: Vec<String> =
-        designs.iter().map(|(name, design)| format!("{name} {}", resolved_hash(design))).collect();
-    let mut text = format!(
-        "# Error of the tangential force against noise, in percent of the normal force, by the f64 solver.\n\
-         # {} round sliding contacts at a friction of {FRICTION} with {DRAWS} draws of noise each, no contact drawn by a calibration.\n\
-         # noise: standard deviation in percent of the largest reading of a frame.\n\
-         # command: cargo xtask noise DESIGNS --out results/noise.csv\n\
-         # designs: {}\n\
-         design,noise,median,p95,worst\n",
-        SEEDS.count(),
-        hashes.join(", ")
-    );
+pub fn rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
+    let mut text = String::new();
     for (name, design) in designs {
         let frames = Kind::Sliding.frames(&design.sensor, FRICTION, SEEDS)?;
         for percent in NOISE_PERCENT {

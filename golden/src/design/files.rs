@@ -100,6 +100,15 @@ impl Design {
         let weights = correction.map(|correction| (WEIGHTS_FILE, correction.to_csv()));
         calibration.into_iter().chain(points).chain(weights).collect()
     }
+
+    /// The hash that names a design in its Verilog, registers and measured tables: the first 16 hexadecimal digits of the
+    /// SHA-256 of the resolved design and its files.
+    pub fn hash(&self) -> String {
+        let files = self.files().into_iter().map(|(_, content)| content);
+        let mut hash = sha256(&files.fold(self.to_toml(), |text, content| text + &content));
+        hash.truncate(16);
+        hash
+    }
 }
 
 /// The SHA-256 sum in hexadecimal digits, as `sha256sum` prints it.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::contacts::{Pressed, Truth, errors_of as judge, frames, inside};
-use crate::designs::design;
+use crate::designs::{design, renew_table};
 use crate::families::{cells, judge as judged, share};
 use golden::scene::{Kind, Medium};
 use golden::solver::Solver;
@@ -46,30 +46,37 @@ fn one_contact_keeps_to_the_figures() {
 }
 
 #[test]
-#[ignore = "prints the table of results/clipped.csv; seconds"]
+#[ignore = "writes results/clipped.csv; seconds"]
 fn table() {
+    let mut rows = String::new();
     for sensor in ["sensor1", "sensor2"] {
-        for kind in ["fast", "clipped-wide"] {
+        for (kind, training_set) in [("fast", "\"sliding, for tension\""), ("clipped-wide", "general")] {
             let design = design(&format!("{sensor}-{kind}"));
             let solver = Solver::new(&design).unwrap();
             for (poisson, noise) in [(0.49, 0.0), (0.49, 0.002), (0.47, 0.0)] {
                 let set = inside(&design.sensor, Medium::BondedLayer { poisson }, SEED, 200);
-                let mut row = format!("| {} | {kind} | {poisson} | {} |", &sensor[6..], 100.0 * noise);
                 for friction in FRICTIONS {
                     let ([tangential, normal], _) = judge(&solver, &clipped(&set, friction, noise));
                     let [median, most, worst] = [0.5, 0.95, 1.0].map(|part| share(&tangential, part));
+                    let (sensor, noise, normal) = (&sensor[6..], 100.0 * noise, share(&normal, 0.95));
                     // Writing to a String cannot fail.
-                    let _ = write!(row, " {median:.1} / {most:.1} / {worst:.1} | {:.1} |", share(&normal, 0.95));
+                    let _ = writeln!(
+                        rows,
+                        "{sensor},{training_set},{poisson},{noise},{friction},{median:.1},{most:.1},{worst:.1},{normal:.1}"
+                    );
                 }
-                println!("{row}");
             }
         }
     }
+    let names = ["sensor1-fast", "sensor1-clipped-wide", "sensor2-fast", "sensor2-clipped-wide"];
+    let columns = "sensor,training_set,poisson,noise,friction,median,p95,worst,normal_p95";
+    renew_table("clipped.csv", &names, columns, &rows);
 }
 
 #[test]
-#[ignore = "prints the rows of results/clipped-kinds.csv; minutes"]
+#[ignore = "writes results/clipped-kinds.csv; minutes"]
 fn families() {
+    let mut rows = String::new();
     for sensor in ["sensor1", "sensor2"] {
         let design = design(&format!("{sensor}-clipped-wide"));
         let solver = Solver::new(&design).unwrap();
@@ -79,7 +86,9 @@ fn families() {
             for stress in frames.iter_mut().flat_map(|frame| &mut frame.stress) {
                 *stress = stress.min(0.0);
             }
-            println!("{},{kind},general,{}", &sensor[6..], cells(&judged(&solver, &frames)));
+            let _ = writeln!(rows, "{},{kind},general,{}", &sensor[6..], cells(&judged(&solver, &frames)));
         }
     }
+    let names = ["sensor1-clipped-wide", "sensor2-clipped-wide"];
+    renew_table("clipped-kinds.csv", &names, "sensor,kind,training_set,median,p95,worst", &rows);
 }

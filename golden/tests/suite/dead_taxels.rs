@@ -1,6 +1,6 @@
 //! Dead taxels whose place is known: what replaces them, and what is left of their error.
 
-use crate::designs::design as shipped;
+use crate::designs::{design as shipped, renew_table};
 use golden::dead_taxels::{DeadTaxels, MOST_DEAD};
 use golden::design::Design;
 use golden::kernel::Kernel;
@@ -62,52 +62,77 @@ fn judge(solver: &Solver, frame: &SceneFrame, dead: &[usize]) -> (f64, Status) {
     (difference(0).max(difference(1)) / frame.force[2].abs(), solution.status)
 }
 
+/// Median and worst error in percent with so many dead taxels, as they read and as they are replaced.
+struct Errors {
+    dead: usize,
+    reads: [f64; 2],
+    replaced: [f64; 2],
+}
+
+/// Errors without a dead taxel, and with some of the most loaded ones dead.
+fn measure(name: &str) -> ([f64; 2], Vec<Errors>) {
+    let design = shipped(name);
+    let scenes = scenes(&design.sensor);
+    let plain = Solver::new(&design).unwrap();
+    let mut whole: Vec<f64> = scenes.iter().flatten().map(|frame| judge(&plain, frame, &[]).0).collect();
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let mut of = |dead: usize| {
+        let (mut reads, mut replaced) = (Vec::new(), Vec::new());
+        for frames in &scenes {
+            // One at a time of the ten most loaded ones, or as many of the twenty.
+            let loaded = by_load(&frames[0]);
+            let maps: Vec<Vec<usize>> = if dead == 1 {
+                loaded[..10].iter().map(|&taxel| vec![taxel]).collect()
+            } else {
+                (0..4).map(|_| loaded[..20].choose_multiple(&mut random, dead).copied().collect()).collect()
+            };
+            for mut dead in maps {
+                dead.sort_unstable();
+                let mut with_map = design.clone();
+                with_map.input.dead.clone_from(&dead);
+                let solver = Solver::new(&with_map).unwrap();
+                for frame in frames {
+                    reads.push(judge(&plain, frame, &dead).0);
+                    let (error, status) = judge(&solver, frame, &dead);
+                    assert!(status.contains(Status::REPLACED));
+                    replaced.push(error);
+                }
+            }
+        }
+        Errors { dead, reads: shown(&mut reads), replaced: shown(&mut replaced) }
+    };
+    let errors = [1, 2, 4, MOST_DEAD].map(&mut of).into();
+    (shown(&mut whole), errors)
+}
+
 #[test]
 fn neighbours_make_good_most_of_a_dead_taxels_error() {
     // Most that is allowed with one dead taxel among the ten most loaded: median and worst, in percent.
     for (name, most) in [("sensor1-fast", [2.5, 9.0]), ("sensor2-fast", [3.5, 20.0])] {
-        let design = shipped(name);
-        let scenes = scenes(&design.sensor);
-        let plain = Solver::new(&design).unwrap();
-        let mut whole: Vec<f64> = scenes.iter().flatten().map(|frame| judge(&plain, frame, &[]).0).collect();
-        let [median, worst] = shown(&mut whole);
-        println!("{name}: none dead: median {median:.1} %, worst {worst:.1} %, {} frames", whole.len());
-        let mut random = ChaCha8Rng::seed_from_u64(5);
-        for count in [1, 2, 4, MOST_DEAD] {
-            let (mut before, mut after, mut unsaid) = (Vec::new(), Vec::new(), Vec::new());
-            for frames in &scenes {
-                // One at a time of the ten most loaded ones, or as many of the twenty.
-                let loaded = by_load(&frames[0]);
-                let maps: Vec<Vec<usize>> = if count == 1 {
-                    loaded[..10].iter().map(|&taxel| vec![taxel]).collect()
-                } else {
-                    (0..4).map(|_| loaded[..20].choose_multiple(&mut random, count).copied().collect()).collect()
-                };
-                for mut dead in maps {
-                    dead.sort_unstable();
-                    let mut with_map = design.clone();
-                    with_map.input.dead.clone_from(&dead);
-                    let solver = Solver::new(&with_map).unwrap();
-                    for frame in frames {
-                        before.push(judge(&plain, frame, &dead).0);
-                        let (error, status) = judge(&solver, frame, &dead);
-                        assert!(status.contains(Status::REPLACED));
-                        if !status.contains(Status::TOO_MANY_REPLACED) {
-                            unsaid.push(error);
-                        }
-                        after.push(error);
-                    }
-                }
-            }
-            let (was, is) = (shown(&mut before), shown(&mut after));
-            println!("{name}: {count} dead: {was:.1?} to {is:.1?} % of {} frames", after.len());
-            if !unsaid.is_empty() {
-                println!("  where not too many are: {:.1?} % of {} frames", shown(&mut unsaid), unsaid.len());
-            }
+        for Errors { dead, reads: was, replaced: is } in measure(name).1 {
             assert!(is[0] < 0.6 * was[0], "{name}: {was:?} to {is:?}");
-            assert!(count > 1 || (is[0] < most[0] && is[1] < most[1]), "{name}: {is:?}");
+            assert!(dead > 1 || (is[0] < most[0] && is[1] < most[1]), "{name}: {is:?}");
         }
     }
+}
+
+#[test]
+#[ignore = "writes results/dead-taxels.csv; seconds"]
+fn table() {
+    let names = ["sensor1-fast", "sensor2-fast"];
+    let [first, second] = names.map(measure);
+    let row = |sensor: usize, dead: &str, taxels: &str, [median, worst]: [f64; 2]| {
+        format!("{sensor},{dead},{taxels},{median:.1},{worst:.1}\n")
+    };
+    let mut rows = row(1, "none", "no dead taxel", first.0) + &row(2, "none", "no dead taxel", second.0);
+    for pair in first.1.iter().zip(&second.1) {
+        for (number, Errors { dead, reads, replaced }) in [(1, pair.0), (2, pair.1)] {
+            let dead = dead.to_string();
+            rows += &row(number, &dead, "reads 0", *reads);
+            rows += &row(number, &dead, "replaced", *replaced);
+        }
+    }
+    renew_table("dead-taxels.csv", &names, "sensor,dead,taxels,median,worst", &rows);
 }
 
 #[test]

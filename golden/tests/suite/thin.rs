@@ -10,6 +10,7 @@ use golden::solver::{Solver, Status};
 use rayon::prelude::*;
 
 use crate::contacts::{errors_of, frames, inside};
+use crate::designs::renew_table;
 use crate::families::share;
 
 const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
@@ -53,45 +54,24 @@ fn judge(design: &Design, count: usize) -> ([Vec<f64>; 2], usize, usize) {
 }
 
 #[test]
-#[ignore = "prints rows of results/thin-layers.csv; minutes"]
+#[ignore = "writes results/thin-layers.csv; half an hour"]
 fn table() {
+    let mut rows = String::new();
     for kernel in [Kernel::Point, Kernel::Cell] {
         // By points there is nothing below 0.3.
         let thinnest = [0.2, 0.25].into_iter().filter(|_| kernel == Kernel::Cell);
         for ratio in thinnest.chain([0.3, 0.35, 0.4, 0.5, 0.6, 0.75, 1.0]) {
             let kinds = [None, Some(Settings::constants()), Some(Settings::default())];
-            for (name, settings) in ["line", "joint, as new", "joint, calibrated"].into_iter().zip(kinds) {
+            for (name, settings) in ["line", "\"grid, as new\"", "\"grid, calibrated\""].into_iter().zip(kinds) {
                 let ([tangential, normal], other, _) = judge(&design(ratio, kernel, settings.as_ref()), 200);
-                let mut row = format!("| {ratio} | {kernel} | {name} |");
-                for errors in [tangential, normal] {
-                    let [median, most, worst] = [0.5, 0.95, 1.0].map(|part| share(&errors, part));
-                    // Writing to a String cannot fail.
-                    let _ = write!(row, " {median:.1} / {most:.1} / {worst:.1} |");
-                }
-                println!("{row} {other} |");
+                let of = |errors: &[f64]| [0.5, 0.95, 1.0].map(|part| format!("{:.1}", share(errors, part))).join(",");
+                // Writing to a String cannot fail.
+                let _ = writeln!(rows, "{ratio},{kernel},{name},{},{},{other}", of(&tangential), of(&normal));
             }
         }
     }
-}
-
-/// What `sptfra new` and `sptfra calibrate` make of thin layers, with 64 hidden units, by either kernel.
-#[test]
-#[ignore = "prints rows of results/thin-layers.csv; a quarter of an hour"]
-fn table_of_new_designs() {
-    let settings = Settings { hidden: 64, ..Settings::default() };
-    for pitch_mm in [[4.0, 4.0], [4.0, 2.0]] {
-        for ratio in [0.3, 0.4, 0.5, 0.6] {
-            let cells = [Kernel::Point, Kernel::Cell].map(|kernel| {
-                let estimator = format!("{JOINT}\nkernel = \"{kernel}\"");
-                let design = calibrated(pitch_mm, ratio, &estimator, Some(&settings));
-                let ([tangential, normal], other, _) = judge(&design, 200);
-                let row =
-                    |errors: &[f64]| [0.5, 0.95, 1.0].map(|part| format!("{:.1}", share(errors, part))).join(" / ");
-                format!(" {} | {} | {other} |", row(&tangential), row(&normal))
-            });
-            println!("| {} x {} | {ratio} |{}", pitch_mm[0], pitch_mm[1], cells.concat());
-        }
-    }
+    let columns = "depth_over_pitch,kernel,estimator,median,p95,worst,normal_median,normal_p95,normal_worst,not_good";
+    renew_table("thin-layers.csv", &[], columns, &rows);
 }
 
 /// What thin layers come to, on 20 frames: medians in percent along the surface and of the normal force, at least and at most;

@@ -23,9 +23,7 @@ mod top;
 
 use std::collections::BTreeMap;
 
-use golden::design::Design;
 use golden::scene::SceneError;
-use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 use crate::plan::Plan;
@@ -92,7 +90,7 @@ pub fn emit_for(plan: &Plan, options: &Options) -> Result<FileMap, EmitError> {
     let boards: Vec<Board> = Board::all()?.into_iter().chain(options.boards.iter().cloned()).collect();
     let mut files = FileMap::new();
     let design = plan.design.to_toml();
-    let hash = resolved_hash(&plan.design);
+    let hash = plan.design.hash();
     for (module, text) in modules::render(plan, &hash, options.debug)? {
         files.insert(format!("rtl/{module}.v"), text.into_bytes());
     }
@@ -116,17 +114,4 @@ pub fn emit_for(plan: &Plan, options: &Options) -> Result<FileMap, EmitError> {
     let metadata = metadata::metadata(plan, &hash, &files)?;
     files.insert("metadata.json".to_owned(), metadata);
     Ok(files)
-}
-
-/// First 16 hexadecimal digits of the SHA-256 of generator version and resolved design.
-pub fn design_hash(resolved_design: &str) -> String {
-    let digest = Sha256::digest(format!("{VERSION}\n{resolved_design}"));
-    digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect()
-}
-
-/// The hash of a design, as its files, `metadata.json` and its registers have it.
-pub fn resolved_hash(design: &Design) -> String {
-    // What stands in files of their own, calibration and weights, is a part of the design.
-    let files = design.files().into_iter().map(|(_, content)| content);
-    design_hash(&files.fold(design.to_toml(), |text, content| text + &content))
 }

@@ -1,7 +1,7 @@
 //! What `sptfra run` asks of a register bank: who it is, and whether it counts what happens.
 
 use hdl_gen::blocks::registers::{self, MAP_VERSION};
-use hdl_gen::emit::{VERSION, resolved_hash};
+use hdl_gen::emit::VERSION;
 use hdl_gen::model::{BAD_LENGTH, NOT_FINITE};
 use hdl_gen::plan::Plan;
 use serde::Serialize;
@@ -95,7 +95,7 @@ pub fn check(trial: &Trial<'_>, built: &Built, progress: impl Fn()) -> Result<Re
 /// Name, address and value of the registers that say what the core is.
 fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
     let (sensor, hardware) = (&plan.design.sensor, &plan.design.hardware);
-    let hash = u64::from_str_radix(&resolved_hash(&plan.design), 16).unwrap_or_default();
+    let hash = u64::from_str_radix(&plan.design.hash(), 16).unwrap_or_default();
     let part = |index| VERSION.split('.').nth(index).and_then(|text| text.parse::<u32>().ok()).unwrap_or_default();
     // From bit 8 on, behind eight features.
     let stream = (hardware.stream_bits / 8) | (u32::from(registers::samples(plan)) << 8);

@@ -2,14 +2,12 @@
 
 pub mod bench;
 pub mod cells;
-pub mod confidence;
 pub mod corner_cases;
-pub mod drift;
 pub mod luts;
 pub mod mutants;
-pub mod noise;
 pub mod solver;
 pub mod stress;
+pub mod study;
 
 use std::path::PathBuf;
 

@@ -1,10 +1,13 @@
 //! Layers further from what the design says than any of the calibration: another Poisson's ratio, another depth.
 
+use std::fmt::Write;
+
 use golden::design::Sensor;
 use golden::scene::{Kind, Medium, SceneFrame};
 use golden::solver::Solver;
 
 use super::{Judged, cells, design, judge, share};
+use crate::designs::{ESTIMATORS, renew_table};
 
 /// A layer: its Poisson's ratio, and how much deeper it is than the design says, as a share.
 type Layer = (&'static str, f64, f64);
@@ -30,17 +33,20 @@ fn frames(sensor: &Sensor, (_, poisson, depth): Layer, seeds: std::ops::Range<u6
 }
 
 #[test]
-#[ignore = "prints the rows of results/layers.csv; minutes"]
+#[ignore = "writes results/layers.csv; minutes"]
 fn table() {
+    let mut rows = String::new();
     for sensor in ["sensor1", "sensor2"] {
         let solvers = ["none", "fast", "wide"].map(|kind| Solver::new(&design(&format!("{sensor}-{kind}"))).unwrap());
         for layer in LAYERS {
             let frames = frames(solvers[0].matrices().sensor(), layer, 1000..1200);
             for (estimator, solver) in ["line", "sliding", "general"].iter().zip(&solvers) {
-                println!("{},{},{estimator},{}", &sensor[6..], layer.0, cells(&judge(solver, &frames)));
+                // Writing to a String cannot fail.
+                let _ = writeln!(rows, "{},{},{estimator},{}", &sensor[6..], layer.0, cells(&judge(solver, &frames)));
             }
         }
     }
+    renew_table("layers.csv", &ESTIMATORS, "sensor,layer,estimator,median,p95,worst", &rows);
 }
 
 /// Error of a frame's tangential force in percent of the normal force: along its push, more than 0 for too much, and

@@ -5,8 +5,9 @@ mod layers;
 mod torque;
 
 use std::f64::consts::PI;
+use std::fmt::Write;
 
-use crate::designs::design;
+use crate::designs::{ESTIMATORS, design, renew_table};
 use golden::scene::{Kind, SceneFrame, normal};
 use golden::solver::{Solver, Status};
 use rand::SeedableRng;
@@ -118,9 +119,10 @@ pub fn cells(Judged { errors, .. }: &Judged) -> String {
 }
 
 #[test]
-#[ignore = "prints the rows of results/contact-kinds.csv; a quarter of an hour"]
+#[ignore = "writes results/contact-kinds.csv; a quarter of an hour"]
 fn table() {
     const FRAMES: u64 = 200;
+    let mut rows = String::new();
     for sensor in ["sensor1", "sensor2"] {
         let designs = ["none", "fast", "wide"].map(|kind| design(&format!("{sensor}-{kind}")));
         let solvers = designs.each_ref().map(|design| Solver::new(design).unwrap());
@@ -135,11 +137,14 @@ fn table() {
             let found = solvers.each_ref().map(|solver| judge(solver, &frames));
             let own = if all { "0.1 to 1" } else { "0.5" };
             for (estimator, judged) in ["line", "sliding", "general"].iter().zip(&found) {
-                println!("{number},{kind},{estimator},{own},{}", cells(judged));
+                // Writing to a String cannot fail.
+                let _ = writeln!(rows, "{number},{kind},{estimator},{own},{}", cells(judged));
             }
             for friction in [0.2, 0.8].into_iter().filter(|_| !all) {
-                println!("{number},{kind},general,{friction},{}", cells(&judge(&solvers[2], &of(friction))));
+                let judged = judge(&solvers[2], &of(friction));
+                let _ = writeln!(rows, "{number},{kind},general,{friction},{}", cells(&judged));
             }
         }
     }
+    renew_table("contact-kinds.csv", &ESTIMATORS, "sensor,kind,estimator,friction,median,p95,worst", &rows);
 }

@@ -1,5 +1,7 @@
 //! Torques of single contacts: where a contact presses, and how it turns.
 
+use std::fmt::Write;
+
 use golden::contacts::ContactForces;
 use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneFrame};
@@ -7,6 +9,7 @@ use golden::sensor::Sensor;
 use golden::solver::Solver;
 
 use super::design;
+use crate::designs::renew_table;
 
 /// Errors over the normal force in mm.
 struct Torques {
@@ -79,8 +82,9 @@ fn torques_are_near_the_true_ones_on_every_kind() {
 }
 
 #[test]
-#[ignore = "prints the rows of results/torques.csv; minutes"]
+#[ignore = "writes results/torques.csv; minutes"]
 fn table() {
+    let mut rows = String::new();
     let row = |Quantiles { median, most, worst }: Quantiles| format!("{median:.2},{most:.2},{worst:.2}");
     let solvers = ["sensor1", "sensor2"]
         .map(|sensor| ["none", "wide"].map(|kind| Solver::new(&design(&format!("{sensor}-{kind}"))).unwrap()));
@@ -92,7 +96,14 @@ fn table() {
             let Torques { place, along, beside, about_middle, own, is } = wide;
             let [line, about_middle, own, place] = [line.about_middle, about_middle, own, place].map(row);
             let (sensor, own_true, beside) = (number + 1, is.median, beside.median);
-            println!("{sensor},{kind},{line},{about_middle},{own},{own_true:.2},{place},{along:.2},{beside:.2}");
+            // Writing to a String cannot fail.
+            let _ = writeln!(
+                rows,
+                "{sensor},{kind},{line},{about_middle},{own},{own_true:.2},{place},{along:.2},{beside:.2}"
+            );
         }
     }
+    let columns = "sensor,kind,line_tz_median,line_tz_p95,line_tz_worst,tz_median,tz_p95,tz_worst,own_median,own_p95,own_worst,\
+                   own_true,place_median,place_p95,place_worst,along,beside";
+    renew_table("torques.csv", &["sensor1-none", "sensor1-wide", "sensor2-none", "sensor2-wide"], columns, &rows);
 }

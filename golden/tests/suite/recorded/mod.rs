@@ -6,6 +6,9 @@ mod rates;
 mod simulated;
 mod table;
 
+use std::fmt::Write;
+
+use crate::designs::renew_table;
 use golden::calibrate::recorded::{Measured, Recorded, fit_forces};
 use golden::design::{Curve, Design};
 use golden::solver::{Solver, Status};
@@ -83,18 +86,19 @@ fn check(what: &str, recipe: &Recipe, limits: [f64; 4]) -> Recorded {
     found
 }
 
-/// The table of docs/how-to/calibrate-with-weights.md, from seeds and indenters that no choice was made on.
+/// From seeds and indenters that no choice was made on.
 #[test]
-#[ignore = "two minutes, for the docs"]
+#[ignore = "writes results/recordings.csv; two minutes"]
 fn figures() {
+    let mut rows = String::new();
     let plain = Recipe { noise: 2.0, ..Recipe::new(0, Indenter::Ball) };
     let kinds = [
         ("straight, gains 10 %", Recipe { scale: 40.0, spread: 0.1, ..plain.clone() }),
         ("power 1.25, gains 10 %", Recipe { power: 1.25, scale: 5.0, spread: 0.1, ..plain.clone() }),
         ("power 0.57, gains 10 %", Recipe { power: 0.57, scale: 1200.0, spread: 0.1, ..plain.clone() }),
-        ("the same, 12 places", Recipe { power: 0.57, scale: 1200.0, spread: 0.1, places: 12, ..plain.clone() }),
+        ("power 0.57, 12 places", Recipe { power: 0.57, scale: 1200.0, spread: 0.1, places: 12, ..plain.clone() }),
         (
-            "power 0.57, offsets of 60, creep 33 %, repeats to 10 %",
+            "power 0.57, repeats to 10 %",
             Recipe {
                 power: 0.57,
                 scale: 1200.0,
@@ -107,7 +111,7 @@ fn figures() {
             },
         ),
         (
-            "the same, repeats to 18 %",
+            "power 0.57, repeats to 18 %",
             Recipe {
                 power: 0.57,
                 scale: 1200.0,
@@ -134,10 +138,15 @@ fn figures() {
             [values[values.len() / 2], values[values.len() - 1]]
         };
         let columns: Vec<String> =
-            (0..7).map(|k| middle(&|figures| figures[k])).map(|[m, w]| format!("{m:.1} ({w:.1})")).collect();
+            (0..7).map(|k| middle(&|figures| figures[k])).map(|[m, w]| format!("{m:.1},{w:.1}")).collect();
         told.sort_by(f64::total_cmp);
-        println!("| {what} | {} | {:.1} ({:.1}) |", columns.join(" | "), told[4], told[8]);
+        // Writing to a String cannot fail.
+        let _ = writeln!(rows, "\"{what}\",{},{:.1},{:.1}", columns.join(","), told[4], told[8]);
     }
+    let columns = "sensor,curve,curve_worst,gains_before,gains_before_worst,gains_after,gains_after_worst,fz_median,\
+                   fz_median_worst,fz_p95,fz_p95_worst,fz_worst,fz_worst_worst,saturated,saturated_worst,printed_median,\
+                   printed_median_worst";
+    renew_table("recordings.csv", &[], columns, &rows);
 }
 
 fn straight(seed: u64) -> Recipe {

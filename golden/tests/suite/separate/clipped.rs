@@ -8,11 +8,10 @@ use golden::scene::SceneFrame;
 use golden::solver::Solver;
 
 use super::kinds::{Kind, frame};
-use super::tables::{KINDS, print_rows};
 use super::{design, judge};
 
 /// Frames of a kind as a sensor reads them that knows no pull.
-fn frames(sensor: &Sensor, kind: Kind, seeds: Range<u64>) -> Vec<SceneFrame> {
+pub fn frames(sensor: &Sensor, kind: Kind, seeds: Range<u64>) -> Vec<SceneFrame> {
     let mut frames: Vec<SceneFrame> = seeds.map(|seed| frame(sensor, kind, seed)).collect();
     for stress in frames.iter_mut().flat_map(|frame| &mut frame.stress) {
         *stress = stress.min(0.0);
@@ -35,21 +34,5 @@ fn half_of_the_contacts_are_known() {
             "{said}"
         );
         assert!(several.total.median < 0.5 * one.total.median, "{said}: {:.1?} {:.1?}", several.total, one.total);
-    }
-}
-
-#[test]
-#[ignore = "prints rows of results/several-contacts.csv; minutes"]
-fn table() {
-    let shown = |kind: &Kind| match kind {
-        Kind::Apart(micrometres) => *micrometres >= 6000,
-        other => !matches!(other, Kind::Row | Kind::Heavier(_) | Kind::Wide),
-    };
-    for sensor in ["sensor1", "sensor2"] {
-        let solvers = [1, 4].map(|contacts| Solver::new(&design(&format!("{sensor}-clipped-wide"), contacts)).unwrap());
-        for (kind, label) in KINDS.into_iter().filter(|(kind, _)| shown(kind)) {
-            let frames = frames(solvers[0].matrices().sensor(), kind, 3000..3100);
-            print_rows(sensor, label, "\"general, clipped\"", &solvers, &frames);
-        }
     }
 }

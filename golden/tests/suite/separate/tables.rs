@@ -1,14 +1,17 @@
 //! The rows of `results/several-contacts.csv`, errors in percent of the normal force.
 
+use std::fmt::Write;
+
 use golden::metrics::Quantiles;
 use golden::scene::SceneFrame;
 use golden::solver::Solver;
 
 use super::kinds::{Kind, frame};
-use super::{design, judge};
+use super::{clipped, design, judge};
+use crate::designs::renew_table;
 
-/// Prints the rows of one kind of frames, solved as one contact and with each contact separated.
-pub fn print_rows(sensor: &str, label: &str, training_set: &str, solvers: &[Solver; 2], frames: &[SceneFrame]) {
+/// Adds the rows of one kind of frames, solved as one contact and with each contact separated.
+fn add_rows(rows: &mut String, [sensor, label, training_set]: [&str; 3], solvers: &[Solver; 2], frames: &[SceneFrame]) {
     let [one, several] = solvers.each_ref().map(|solver| judge(solver, frames));
     for (quantity, Quantiles { median, most, worst }) in [
         ("\"sum, solved as one\"", one.total),
@@ -19,13 +22,18 @@ pub fn print_rows(sensor: &str, label: &str, training_set: &str, solvers: &[Solv
         // Of no contact there is no error.
         if !median.is_nan() {
             let right = several.contacts.right;
-            println!("{},\"{label}\",{training_set},{quantity},{median:.1},{most:.1},{worst:.1},{right}", &sensor[6..]);
+            let sensor = &sensor[6..];
+            // Writing to a String cannot fail.
+            let _ = writeln!(
+                rows,
+                "{sensor},\"{label}\",{training_set},{quantity},{median:.1},{most:.1},{worst:.1},{right}"
+            );
         }
     }
 }
 
 /// Kinds of the first table, and of those of single designs.
-pub const KINDS: [(Kind, &str); 19] = [
+const KINDS: [(Kind, &str); 19] = [
     (Kind::Same, "two, pushed the same way"),
     (Kind::Opposed, "two, opposed"),
     (Kind::Anyhow, "two, anyhow"),
@@ -48,8 +56,9 @@ pub const KINDS: [(Kind, &str); 19] = [
 ];
 
 #[test]
-#[ignore = "prints rows of results/several-contacts.csv; minutes"]
-fn separated() {
+#[ignore = "writes results/several-contacts.csv; minutes"]
+fn table() {
+    let mut rows = String::new();
     for sensor in ["sensor1", "sensor2"] {
         for (kind, label) in KINDS {
             let geometry = design(&format!("{sensor}-fast"), 1).sensor;
@@ -57,8 +66,24 @@ fn separated() {
             for (name, training_set) in [("fast", "sliding"), ("wide", "general")] {
                 let solvers =
                     [1, 4].map(|contacts| Solver::new(&design(&format!("{sensor}-{name}"), contacts)).unwrap());
-                print_rows(sensor, label, training_set, &solvers, &frames);
+                add_rows(&mut rows, [sensor, label, training_set], &solvers, &frames);
             }
         }
     }
+    let shown = |kind: &Kind| match kind {
+        Kind::Apart(micrometres) => *micrometres >= 6000,
+        other => !matches!(other, Kind::Row | Kind::Heavier(_) | Kind::Wide),
+    };
+    for sensor in ["sensor1", "sensor2"] {
+        let solvers = [1, 4].map(|contacts| Solver::new(&design(&format!("{sensor}-clipped-wide"), contacts)).unwrap());
+        for (kind, label) in KINDS.into_iter().filter(|(kind, _)| shown(kind)) {
+            let frames = clipped::frames(solvers[0].matrices().sensor(), kind, 3000..3100);
+            add_rows(&mut rows, [sensor, label, "\"general, clipped\""], &solvers, &frames);
+        }
+    }
+    let names = ["fast", "wide", "clipped-wide"];
+    let names: Vec<String> =
+        ["sensor1", "sensor2"].iter().flat_map(|sensor| names.map(|name| format!("{sensor}-{name}"))).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    renew_table("several-contacts.csv", &names, "sensor,frames,training_set,quantity,median,p95,worst,right", &rows);
 }

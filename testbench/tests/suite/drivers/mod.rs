@@ -17,7 +17,7 @@ use crate::support::effort::{self, half_of};
 use crate::support::faults::some_faults_of;
 use crate::support::{built, frames, planned, shipped, workspace};
 use golden::design::{Design, Outputs, Overrun, PlanKind, Samples, Scaling};
-use hdl_gen::emit::{emit, resolved_hash};
+use hdl_gen::emit::emit;
 use hdl_gen::model::Model;
 use hdl_gen::plan::Plan;
 use rand::SeedableRng;
@@ -230,7 +230,7 @@ fn the_c_driver_gets_every_word_and_knows_the_core() {
         let (plan, timeline) = (&subject.plan, &subject.plan.timeline);
         let identity = format!(
             "hash {} lanes {} clock 125000 latency {} interval {} full scale 100000 drops {}\n",
-            resolved_hash(&plan.design),
+            plan.design.hash(),
             plan.design.hardware.lanes,
             timeline.latency_cycles,
             timeline.interval_cycles,
@@ -342,7 +342,7 @@ fn the_python_driver_gets_every_word_and_knows_the_core() {
                 .arg(subject.file("metadata.json"));
             command
         });
-        let hash = resolved_hash(&subject.plan.design);
+        let hash = subject.plan.design.hash();
         assert!(said.contains(&format!("design_hash='{hash}', columns=4, rows=3, lanes=4")), "{said}");
         assert!(said.contains(&format!("PASS: 18 frames, {bad} bad")), "{said}");
     }
