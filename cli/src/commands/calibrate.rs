@@ -134,7 +134,7 @@ pub fn run(args: &Args) -> message::Result {
         if has_constants {
             say!(text, "  training set  {}", report.training_set);
         }
-        say!(text, "  noise       up to {} % of the largest reading", (1e4 * design.input.noise).round() / 100.0);
+        say!(text, "  noise       {} % of the largest reading", (1e4 * design.input.noise).round() / 100.0);
         if has_constants {
             say!(text, "  gain        {:.4}", report.gain);
             let [c1, c3] = report.friction_correction;

@@ -57,7 +57,7 @@ pub struct Args {
     full_scale_pa: Option<f64>,
     /// Standard deviation of a reading, as a share of the frame's largest reading: 1% or 0.01; default: 0.5%.
     ///
-    /// `sptfra calibrate` trains at this noise and below. `sptfra check --unloaded --loaded` measures it.
+    /// `sptfra calibrate` trains at up to 1.5 times this noise. `sptfra check --unloaded --loaded` measures it.
     #[arg(long, value_name = "SHARE", value_parser = share)]
     noise: Option<f64>,
     /// Write design.schema.json too, the JSON schema by which editors explain, complete and check the keys.

@@ -119,6 +119,6 @@ pub(super) fn sample(
     for stress in &mut frame {
         *stress *= 1.0 + spread * normal(random);
     }
-    let noise = observer.noise() * random.random::<f64>();
+    let noise = observer.noise(random);
     observer.sample(frame, force, noise, random)
 }

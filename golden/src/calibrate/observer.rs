@@ -1,5 +1,6 @@
 //! One frame as the estimator of a design sees it, before it is calibrated.
 
+use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
 use super::CalibrateError;
@@ -9,6 +10,9 @@ use crate::numbers::magnitude;
 use crate::products::ByPq;
 use crate::scene::normal;
 use crate::solver::{Solver, Status, Workspace};
+
+/// Most noise of a frame over the design's: a network that was trained with no more is less exact at what the design says.
+const MOST_NOISE: f64 = 1.5;
 
 /// One frame as the calibration needs it.
 pub(super) struct Sample {
@@ -55,9 +59,9 @@ impl<'a> Observer<'a> {
         self.design.input.tension
     }
 
-    /// Standard deviation of a reading's noise, as a share of the frame's largest reading.
-    pub(super) fn noise(&self) -> f64 {
-        self.design.input.noise
+    /// Draws the standard deviation of a frame's noise, as a share of its largest reading.
+    pub(super) fn noise(&self, random: &mut ChaCha8Rng) -> f64 {
+        MOST_NOISE * self.design.input.noise * random.random::<f64>()
     }
 
     /// The contacts that the design is trained on.

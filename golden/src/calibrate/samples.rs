@@ -92,7 +92,7 @@ fn sliding(
         let load = |kind: usize, taxel: usize| (1.0 - share) * one[kind][taxel] + share * other[kind][taxel];
         let frame: Vec<f64> =
             (0..one[0].len()).map(|taxel| load(0, taxel) + x * load(1, taxel) + y * load(2, taxel)).collect();
-        let noise = observer.noise() * random.random::<f64>();
+        let noise = observer.noise(&mut random);
         samples.extend(observer.sample(frame, [x, y, -1.0], noise, &mut random)?);
     }
     Ok(samples)

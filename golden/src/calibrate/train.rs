@@ -27,9 +27,9 @@ const LARGEST_WEIGHT: f64 = 7.9;
 /// are brought to about the same one; a factor on a unit goes out of its weights in the output, which changes nothing.
 /// A little less than a power of two: with what rounding the weights adds a full one would cost all units a bit.
 const LARGEST_SUM: f64 = 63.75;
-/// Errors above this count by their size, those below by their square: among contacts of all kinds some cannot be told
-/// from others, and these must not decide the rest.
-const SOFT: f32 = 0.04;
+/// Errors above this count by their size, those below by their square. Frames of much noise and contacts that look alike
+/// must not decide the rest.
+const SOFT: f32 = 0.02;
 /// The shares of all steps between which spare units are left out, evenly.
 const LEFT_OUT: [f64; 2] = [0.1, 0.5];
 /// Share of a step in the mean of what a unit adds.
@@ -63,7 +63,6 @@ pub(super) fn train(
         .collect();
     let basis = Basis::new(samples, half_window, diagonal::has_diagonal(sensor));
     let features = basis.features(samples);
-    let soft = (training_set == TrainingSet::General).then_some(SOFT);
     let mut random = ChaCha8Rng::seed_from_u64(settings.seed);
     // Streams 0 and 1 of the seed made the samples.
     random.set_stream(2);
@@ -80,7 +79,7 @@ pub(super) fn train(
             wanted[(column, 1)] = missing[index][1];
         }
         let rate = 0.5 * RATE * (1.0 + (std::f32::consts::PI * step as f32 / settings.steps as f32).cos());
-        learner.descend(&batch, &wanted, soft, (rate, step));
+        learner.descend(&batch, &wanted, (rate, step));
         learner.leave_out(settings.hidden + spare_left(settings, step));
         tick(Stage::Step);
     }
@@ -158,21 +157,12 @@ impl Learner {
         found
     }
 
-    /// One step, of a length and a number, towards the corrections `wanted`, a row for each sample of the batch. Errors
-    /// above `soft` count by their size.
-    fn descend(
-        &mut self,
-        batch: &[DMatrix<f32>; CLASSES],
-        wanted: &DMatrix<f32>,
-        soft: Option<f32>,
-        (rate, step): (f32, usize),
-    ) {
+    /// One step, of a length and a number, towards the corrections `wanted`, a row for each sample of the batch.
+    fn descend(&mut self, batch: &[DMatrix<f32>; CLASSES], wanted: &DMatrix<f32>, (rate, step): (f32, usize)) {
         let mut errors = (self.correct(batch) - wanted) * (QUARTER / BATCH as f32);
-        if let Some(soft) = soft {
-            let soft = soft * (QUARTER / BATCH as f32);
-            for mut error in errors.row_iter_mut() {
-                error /= (1.0 + error.norm_squared() / (soft * soft)).sqrt();
-            }
+        let soft = SOFT * (QUARTER / BATCH as f32);
+        for mut error in errors.row_iter_mut() {
+            error /= (1.0 + error.norm_squared() / (soft * soft)).sqrt();
         }
         let mut slope = DMatrix::zeros(self.output.weights.nrows(), 2);
         for (axis, odd) in self.odd.iter().enumerate() {
@@ -371,7 +361,7 @@ mod tests {
         assert_eq!(gains, ["0.5", "2"]);
     }
 
-    /// The slopes are those of the squared error, by finite differences.
+    /// The slopes are those of the softened squared error, by finite differences.
     #[test]
     fn a_step_goes_downhill() {
         const BY: f32 = 2e-3;
@@ -379,7 +369,7 @@ mod tests {
         let batch = batch(&samples, &basis);
         let wanted = DMatrix::from_fn(BATCH, 2, |sample, axis| 0.1 * ((sample + axis) % 5) as f32 - 0.2);
         // A step of length 0 leaves the weights and keeps a tenth of the slopes; layer 4 is the output.
-        learner.descend(&batch, &wanted, None, (0.0, 1));
+        learner.descend(&batch, &wanted, (0.0, 1));
         for (layer, at) in [(0, (0, 0)), (0, (4, 3)), (1, (2, 1)), (2, (3, 2)), (3, (1, 0)), (4, (0, 0)), (4, (3, 1))] {
             let mut loss = |by: f32| {
                 let weight = |learner: &mut Learner| match layer {
@@ -388,7 +378,8 @@ mod tests {
                 };
                 weight(&mut learner);
                 let errors = learner.correct(&batch) - &wanted;
-                f64::from(errors.norm_squared()) / (2 * BATCH) as f64
+                let soft = |error: f32| SOFT * SOFT * ((1.0 + error / (SOFT * SOFT)).sqrt() - 1.0);
+                errors.row_iter().map(|error| f64::from(soft(error.norm_squared()))).sum::<f64>() / BATCH as f64
             };
             let difference = (loss(BY) - loss(-2.0 * BY)) / f64::from(2.0 * BY);
             loss(BY);

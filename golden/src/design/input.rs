@@ -36,8 +36,8 @@ pub struct Input {
     pub room: usize,
     /// Whether the sensor reads what pulls.
     pub tension: Tension,
-    /// Standard deviation of a reading's noise, as a share of the frame's largest reading: `sptfra calibrate` trains at this
-    /// noise and below.
+    /// Standard deviation of a reading's noise, as a share of the frame's largest reading: `sptfra calibrate` trains at up to
+    /// 1.5 times this noise.
     pub noise: f64,
     /// Share of the sums of its row and of its column that a taxel reads beside its own stress; 0: none.
     pub crosstalk: f64,

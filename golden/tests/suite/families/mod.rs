@@ -62,7 +62,7 @@ fn frames_of_every_family_have_an_answer_not_far_from_the_truth() {
     let [solver, wide] = [&joint, &design("sensor2-wide")].map(|design| Solver::new(design).unwrap());
     for kind in Kind::ALL {
         let label = kind.title();
-        let frames = kind.frames(&joint.sensor, 0.5, 0..8).unwrap();
+        let frames = kind.frames(&joint.sensor, 0.5, 0..24).unwrap();
         let Judged { errors, .. } = judge(&solver, &frames);
         assert!(frames.iter().all(|frame| frame.friction <= 1.0 + 1e-9 && frame.direction.abs() <= PI));
         let limit = if kind == Kind::Sliding { 4.0 } else { 40.0 };
@@ -72,7 +72,7 @@ fn frames_of_every_family_have_an_answer_not_far_from_the_truth() {
         match kind {
             Kind::Border => assert!(low_confidence > 99.0, "{label}: {low_confidence} % of {errors:?}"),
             Kind::Noisy | Kind::MixedInside | Kind::Mixed => {}
-            _ => assert!(share(&errors, 0.5) < 5.0 && within > 70.0, "{label}: {errors:?} {within}"),
+            _ => assert!(share(&errors, 0.5) < 5.5 && within > 70.0, "{label}: {errors:?} {within}"),
         }
     }
 }

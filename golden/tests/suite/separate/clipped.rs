@@ -30,7 +30,7 @@ fn half_of_the_contacts_are_known() {
         let ContactErrors { tangential, normal, right, within, .. } = several.contacts;
         let said = format!("{name}, {kind:?}: {right} of 24, {tangential:.1?}, {normal:.1?}, {within:.0}");
         assert!(
-            right >= 20 && tangential.median < 8.0 && tangential.most < 22.0 && normal.median < 1.8 && within > 90.0,
+            right >= 20 && tangential.median < 8.0 && tangential.most < 22.0 && normal.median < 1.9 && within > 90.0,
             "{said}"
         );
         assert!(several.total.median < 0.5 * one.total.median, "{said}: {:.1?} {:.1?}", several.total, one.total);
