@@ -27,10 +27,10 @@ pub(super) fn meanings(
             found.push(Some((Meaning::Time, unit)));
             continue;
         }
-        let lower = name.to_lowercase();
-        let cut = lower.find(['(', '[', '{', '/']).unwrap_or(lower.len());
+        // Units keep their case: mN and MN differ.
+        let cut = name.find(['(', '[', '{', '/']).unwrap_or(name.len());
         let (mut base, mut unit) =
-            (lower[..cut].trim(), lower[cut..].trim_matches(|c: char| !c.is_alphanumeric() && c != 'µ'));
+            (name[..cut].trim(), name[cut..].trim_matches(|c: char| !c.is_alphanumeric() && c != 'µ'));
         if unit.is_empty()
             && let Some((before, after)) = base.rsplit_once(['_', ' '])
             && force_or_pressure(after).is_some()
@@ -46,7 +46,7 @@ pub(super) fn meanings(
             found.push(None);
             continue;
         };
-        let is_mass = base.contains("mass");
+        let is_mass = base.to_lowercase().contains("mass");
         let factor = match (unit, meaning) {
             ("", Meaning::Force(_)) if is_mass => return Err(format!("column {name:?} has no unit")),
             ("", _) | (_, Meaning::Contact | Meaning::Time) => 1.0,
@@ -75,7 +75,7 @@ pub(super) fn meanings(
 }
 
 fn meaning(name: &str) -> Option<Meaning> {
-    let letters: String = name.chars().filter(|c| c.is_alphanumeric()).collect();
+    let letters: String = name.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
     Some(match letters.as_str() {
         "fx" | "forcex" | "xforce" => Meaning::Force(0),
         "fy" | "forcey" | "yforce" => Meaning::Force(1),

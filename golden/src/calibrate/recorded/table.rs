@@ -198,6 +198,9 @@ fn read(path: &Path, example: &str, guess: &Guess) -> Result<Measured, RecordedE
             named[0] = Some((Meaning::Time, 1.0));
         }
     }
+    if let Some(names) = &raw.names {
+        refuse_more(&raw, names.len()).map_err(|(problem, remedy)| wrong(problem, remedy))?;
+    }
     let contact = named.iter().position(|column| matches!(column, Some((Meaning::Contact, _))));
     let mut measured = Measured { remarks, ..Measured::default() };
     let (mut contacts, mut times) = (Vec::new(), Vec::new());
@@ -239,6 +242,24 @@ fn read(path: &Path, example: &str, guess: &Guess) -> Result<Measured, RecordedE
     measured.contacts = contact.map(|_| contacts);
     measured.times = times.iter().all(|time| time.is_finite()).then_some(times).filter(|times| !times.is_empty());
     Ok(measured)
+}
+
+/// Refuses a line with more values than the header has names: decimal commas look like separators.
+fn refuse_more(raw: &Raw, names: usize) -> Result<(), (String, String)> {
+    let filled = |fields: &[String]| fields.iter().rposition(|field| !field.is_empty()).map_or(0, |last| last + 1);
+    let Some((line, fields)) = raw.rows.iter().find(|(_, fields)| filled(fields) > names) else { return Ok(()) };
+    let plural = if names == 1 { "" } else { "s" };
+    let remedy = match raw.separator {
+        Separator::Byte(b',') => "are these decimal commas? Separate the values by semicolons, or write decimal points",
+        _ => "name every column in the header",
+    };
+    let problem = format!("line {line}: {} values where the header has {names} name{plural}", filled(fields));
+    Err((problem, remedy.to_owned()))
+}
+
+/// Whether a line of words is the name of one column, such as `normal force (N)`.
+fn is_name(line: &str) -> bool {
+    matches!(meanings(&[line.to_owned()], None, &mut Vec::new()).as_deref(), Ok([Some(_)]))
 }
 
 /// Whether the first column counts or tells the time.
@@ -318,7 +339,8 @@ fn raw(path: &Path) -> Result<Raw, RecordedError> {
     }
     // Of one column the whole line is the name, whatever is in it.
     let fields = |(separator, line): &(Separator, String)| -> Vec<String> {
-        let parts = if columns == 1 { vec![line.as_bytes()] } else { separator.split(line.as_bytes()) };
+        let is_one = *separator == Separator::Spaces && is_name(line);
+        let parts = if columns == 1 || is_one { vec![line.as_bytes()] } else { separator.split(line.as_bytes()) };
         parts.iter().map(|field| String::from_utf8_lossy(field).trim().trim_matches('"').to_owned()).collect()
     };
     let mut heads = heads.iter().map(fields);

@@ -27,6 +27,10 @@ fn columns_units_and_blanks() {
         ("F_x (N),F_y (N),F_z (N)\n1,2,-3\n,,-4\n", vec![[Some(1.0), Some(2.0), Some(-3.0)], [None, None, Some(-4.0)]]),
         ("t [s];Fz [mN];comment\n0,0;2500,5;a\n0,1;nan;b\n", z(&[Some(2.5005), None])),
         ("frame\tweight_g\n1\t100\n2\t200\n", z(&[Some(0.980_665), Some(1.961_33)])),
+        ("F_z (MN)\n2\n", z(&[Some(2e6)])),
+        ("F_z_mN\n2\n", z(&[Some(2e-3)])),
+        ("weight (g)\n\"550,5\"\n", z(&[Some(0.550_5 * 9.806_65)])),
+        ("F_z,\n5,\n", z(&[Some(5.0)])),
         ("load\nkN\n0.001\n0.002\n", z(&[Some(1.0), Some(2.0)])),
         ("# Normal force (N)\n5\n7\n", z(&[Some(5.0), Some(7.0)])),
         ("5\n\n7\n", z(&[Some(5.0), None, Some(7.0)])),
@@ -59,9 +63,14 @@ fn what_nobody_can_tell_is_refused() {
         ("a,b\n1,2\n", ["the columns a, b", "nobody can tell", "write a header"]),
         ("mass\n5\n", ["\"mass\" has no unit", "name the unit", "kg"]),
         ("F_z (stone)\n5\n", ["\"stone\" is no unit of a force", "name the unit", "mN"]),
-        ("F_z (kPa)\n5\n", ["\"kpa\" is no unit of a force", "name the unit", "mN"]),
+        ("F_z (kPa)\n5\n", ["\"kPa\" is no unit of a force", "name the unit", "mN"]),
         ("F_z\n5\nheavy\n", ["line 3, column 1", "\"heavy\" is no finite", "leave blank"]),
         ("F_z\n\"1,010\"\n\"2,500\"\n", ["line 2, column 1", "separators of thousands", "write decimal points"]),
+        ("weight (g)\n550,5\n", ["line 2: 2 values", "1 name", "decimal commas? Separate the values by semicolons"]),
+        ("normal force [N]\n5,40\n", ["line 2: 2 values", "1 name", "decimal commas"]),
+        ("F_z\n-5,40\n", ["line 2: 2 values", "1 name", "decimal commas"]),
+        ("F_x,F_y,F_z\n3,0,-6\n3,00,0,00,-6,00\n", ["line 3: 6 values", "3 names", "decimal commas"]),
+        ("F_z\n5 6\n", ["line 2: 2 values", "1 name", "name every column"]),
         ("F_z,load\n5,5\n", ["2 columns are the force along z", "name", "unit"]),
     ] {
         let said = forces(text).unwrap_err();
@@ -73,6 +82,8 @@ fn what_nobody_can_tell_is_refused() {
 fn pressures_and_arrays() {
     let folder = tempfile::tempdir().unwrap();
     let [text, array] = ["p.csv", "f.npy"].map(|name| folder.path().join(name));
+    fs::write(&text, "pressure (mPa)\n2000\n").unwrap();
+    assert_eq!(read_pressures(&text).unwrap().pressures, [Some(2.0)]);
     fs::write(&text, "pressure (kPa)\n0\n12.5\n-\n").unwrap();
     assert_eq!(read_pressures(&text).unwrap().pressures, [Some(0.0), Some(12500.0), None]);
     golden::frames::write_frames(&array, &[vec![2.0], vec![3.5]]).unwrap();
