@@ -114,9 +114,8 @@ module sptfra_features_window #(
         end
     end
 
-    // Along each axis, the side that grows and the mirrored one: the orbit's column and row, whether the taxel is in
-    // the far half of the grid, and whether it is one at all. On the middle of the window both sides coincide, and only
-    // the first one counts
+    // Along each axis, the side that grows and the mirrored one. Each has the orbit's column or row, whether the taxel
+    // is in the far half of the grid, and whether it is one at all. In the middle of the window only the first counts
     wire [9:0] column_2 [0:1];
     wire [9:0] row_2 [0:1];
     wire [1:0] far_x_2;

@@ -16,8 +16,8 @@ module sptfra_program_scheduler #(
     parameter integer RESIDUALS = 1,
     // Frames that have a buffer until they are released; 0: nothing of a frame stays
     parameter BUFFERS = 4,
-    // 1: the next frame's first program goes ahead of a field whose search is not finished, best for the interval; 0:
-    // it waits until this field is under way, best for the latency under load
+    // 1: the next frame's first program goes ahead of a field whose search is not finished, best for the interval.
+    // 0: it waits until this field is under way, best for the latency under load
     parameter INTERVAL = 1
 ) (
     input  wire clock,

@@ -2,8 +2,8 @@
 
 use crate::plan::Plan;
 
-/// Nets of the core in the order of the probes, each a wire that a line of its own declares: the handshakes of both
-/// streams, the lanes' programs, what leaves the lanes, answers and what is said of a frame.
+/// Nets of the core in the order of the probes, each a wire with a line of its own. They are the handshakes of both
+/// streams, the lanes' programs and results, answers and status.
 const NETS: [&str; 20] = [
     "in_tvalid",
     "in_tready",

@@ -84,8 +84,8 @@ const _: () = assert!(SUM_ROWS <= FEWEST_ELEMENTS);
 /// The row of what `|w|` takes from `F_z`, `T_x` and `T_y` for q = 0, each in its [`sum_channel`].
 pub const SHARE_ROW: usize = 3;
 
-/// The row that holds `G_pq`, p as in [`golden::products::ByPq`]: row q has those of `F_x`, `F_y`, `F_z` and `T_z`, each
-/// in a channel of its own, see [`sum_channel`], row 4 + q those of `T_x` and `T_y`.
+/// The row that holds `G_pq`, p as in [`golden::products::ByPq`]. Row q has those of `F_x`, `F_y`, `F_z` and `T_z`, row
+/// 4 + q those of `T_x` and `T_y`. Each has a channel of its own, see [`sum_channel`].
 pub fn sum_row(p: usize, q: usize) -> usize {
     if matches!(p, 3 | 4) { 4 + q } else { q }
 }

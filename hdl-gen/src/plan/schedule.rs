@@ -206,9 +206,9 @@ fn addend(product: &Product, made: &[Made]) -> u64 {
     made.iter().find(|made| made.result.holds(partial)).map_or(0, |made| made.last_slot)
 }
 
-/// The gap before a program: the results of the one before, `longest_drain` cycles after its last issue at most, must
-/// have left the PEs, and the collector gone on, `left` cycles after that issue, before the first of this one is ready;
-/// and it must have done so before the one after it is started: it remembers one.
+/// The gap before a program. The results of the one before leave the PEs within `longest_drain` cycles of its last issue;
+/// the collector goes on `left` cycles after that issue. Both come before the first result of this program is ready. The
+/// collector remembers one program, so it goes on before the next but one starts.
 fn gap(program: &Program, longest_drain: u64, left: u64) -> u64 {
     let before_result = left.saturating_sub(program.first_slot);
     let before_start = (longest_drain + 1).saturating_sub(program.length);

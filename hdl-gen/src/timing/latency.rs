@@ -111,10 +111,9 @@ pub const TAKE_TO_RESIDUAL: u64 = TAKE_TO_BUS + 1;
 /// From the last weights of a frame to its count: a step for each taxel and for the end of each row, and the way through
 /// sums and comparisons.
 ///
-/// A search has a stage that is longer (that of the grid takes `4 orbits` and more, the others far
-/// longer; it takes `2 orbits + 82` with many lanes, where that is longer than the count), and a frame is begun only when
-/// that stage of the one before the last is over. So a count is there before the search, and neither latency nor
-/// interval knows of it.
+/// A search has a longer stage: that of the grid takes `4 orbits` and more, or `2 orbits + 82` with many lanes. A frame
+/// begins when that stage of the one before the last is over. So a count is there before the search, and adds nothing to
+/// latency or interval.
 pub fn count_contacts(sensor: &Sensor) -> u64 {
     ((sensor.columns + 1) * sensor.rows) as u64 + 12
 }

@@ -48,8 +48,8 @@ pub type Operands<'a> = dyn Fn(&Product, usize, usize) -> Sums + 'a;
 /// Runs the PEs' programs and the collector on vectors of `elements`. Of the matrices, which stand in the programs, only
 /// what PEs drop of a product is looked at.
 ///
-/// Panics where the hardware would go wrong: an operand is read before it is written, a result register
-/// overflows, a result is taken before it is there, two results are taken in one cycle, a word is never read.
+/// Panics where the hardware would go wrong: an operand is read before it is written, or a word never. A result register
+/// overflows, a result is taken too early, or two are taken in one cycle.
 pub fn execute(
     schedule: &Schedule,
     products: &[Product],
