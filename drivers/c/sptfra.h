@@ -276,7 +276,7 @@ typedef struct {
  * SPTFRA_OUT_OF_RANGE for one that no bank takes, and of cores without one. With NULL the curve is that which was. */
 int sptfra_load_bank_and_curve(const sptfra *device, const double *gain, const double *offset,
     const sptfra_replaced *replaced, const sptfra_curve *curve, double noise_floor_pa, uint32_t polls);
-/* A word of the bank that acts, or of the other one. */
+/* A word of the active bank, or of the other one. */
 int sptfra_read_calibration(const sptfra *device, uint16_t index, int acting, uint32_t *word);
 #define SPTFRA_MOST_TARE_LOG2 10u
 /* Begins to average the next 2^log2_frames frames, which are to be at rest; sptfra_calibration_wait says what came of

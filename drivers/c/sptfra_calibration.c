@@ -75,7 +75,7 @@ int sptfra_calibration_wait(const sptfra *device, uint32_t polls)
     return errors ? SPTFRA_OUT_OF_RANGE : SPTFRA_OK;
 }
 
-/* The dead taxels of the map that acts, at most as many as fit into the count's four bits. */
+/* The dead taxels of the active map, at most as many as fit into the count's four bits. */
 static int acting_map(const sptfra *device, const sptfra_numbers *of, uint16_t dead[15], uint32_t *count)
 {
     uint32_t place, word;

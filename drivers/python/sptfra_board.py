@@ -187,7 +187,7 @@ class Sptfra:
         values that no bank takes, RuntimeError if the core refuses, TimeoutError; then what acted still does.
         """
         self._needs_calibration()
-        # What is kept of the bank that acts is read from it, and reads 0 while it changes.
+        # What is kept of the active bank is read from it, and reads 0 while it changes.
         self._calibration_idle()
         gains, offsets, dead, points = read_calibration(path, self.identity.rows * self.identity.columns)
         if curve is not None:
@@ -226,10 +226,10 @@ class Sptfra:
         write(Register.CALIBRATION_COMMIT, crc)
         self._calibration_done(timeout)
         if read(Register.CALIBRATION_CRC) != crc:
-            raise RuntimeError("the bank that acts is not the one that was written")
+            raise RuntimeError("the active bank is not the one that was written")
 
     def _curve_words(self, points, first):
-        """The words of a curve, which begin with this one: of its points, else of the curve that acts."""
+        """The words of a curve, which begin with this one: of its points, else of the active curve."""
         if not self.identity.curve_in_ram:
             if points is not None:
                 raise ValueError("the file has a curve, and the core none in its banks: [sensor] curve")
@@ -241,7 +241,7 @@ class Sptfra:
         return curve_words(points, room, exponent, lsb)
 
     def read_calibration(self, index, acting=True):
-        """A word of the bank that acts, or of the other one: gains, offsets, contact threshold, noise floor, then the map of
+        """A word of the active bank, or of the other one: gains, offsets, contact threshold, noise floor, then the map of
         dead taxels and the curve. Raises RuntimeError while a commit or a tare is under way."""
         self._needs_calibration()
         self._refuse_while_busy()

@@ -9,7 +9,7 @@ MAP_VERSION = 3
 SOFT_RESET = 1
 RESETTING = 1
 CALIBRATION_BUSY = 1 << 9
-#: `CALIBRATION_INDEX`: of the bank that acts.
+#: `CALIBRATION_INDEX`: of the active bank.
 INDEX_ACTIVE = 1 << 31
 
 

@@ -36,7 +36,7 @@ module sptfra_calibration #(
     output wire idle,
     output wire taring,
     input  wire [15:0] index, // the word to be read or written
-    input  wire index_active, // of the bank that acts: read only
+    input  wire index_active, // of the active bank: read only
     input  wire write, // to the other one
     input  wire [31:0] write_data,
     output wire write_allowed,
@@ -51,7 +51,7 @@ module sptfra_calibration #(
     output reg  bad_frame,
     output reg  tare_out_of_range,
     output reg  contradiction,
-    // What acts
+    // The active bank
     output reg  active,
     output reg  [7:0] version,
     output reg  [31:0] crc,
@@ -102,7 +102,7 @@ module sptfra_calibration #(
     reg [63:0] contacts; // bank 1, bank 0
     reg [53:0] noises;
     wire copy_writes = (state == COPY) && (step == COPY_WRITES);
-    // Or of the other one: what acts is read, and never written.
+    // Or of the other one: the active one is read, and never written.
     wire of_active = (state == IDLE) ? (index_active && !write) : (state == COPY) && !copy_writes;
     wire bank = of_active ? active : !active;
 
@@ -280,7 +280,7 @@ module sptfra_calibration #(
         end
     end
 
-    // ---- What acts, and both banks' thresholds
+    // ---- The active bank, and both banks' thresholds
 
     always @(posedge clock) begin
         if ((state == DECIDE) && !wrong && !dead_result[33] && !reset) begin

@@ -33,7 +33,7 @@ module sptfra_dead_bank #(
     // {copy, take, write and end of a tare's copy, begin and word of a walk, write, bank, word of a bank, data}
     input  wire [55:0] command,
     output wire [33:0] result, // {contradicts itself, data may be written, word: a cycle after its place}
-    // Of the bank that acts, and of the frame that comes in
+    // Of the active bank, and of the frame that comes in
     input  wire active,
     output wire [3:0] active_count,
     input  wire read_enable,

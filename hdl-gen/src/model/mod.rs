@@ -44,7 +44,7 @@ pub struct Model<'plan> {
     frames: u16,
     /// Whether the last frame slipped.
     slips: bool,
-    /// Of a calibration in RAM, what acts, and how many have before it.
+    /// Of a calibration in RAM, the active bank, and how many were before it.
     bank: Option<Bank>,
     version: u8,
     /// What readings have crept, taxel by taxel.
@@ -62,7 +62,7 @@ impl<'plan> Model<'plan> {
         Self { plan, frames: 0, slips: false, bank, version: 0, creep: Vec::new(), average: Average::default(), rate }
     }
 
-    /// The bank that acts on the frames from now on, where the design's calibration is in RAM.
+    /// The bank that is active for the frames from now on, where the design's calibration is in RAM.
     pub fn commit(&mut self, bank: Bank) {
         if self.bank.replace(bank).is_some() {
             self.version = self.version.wrapping_add(1);
@@ -138,7 +138,7 @@ impl<'plan> Model<'plan> {
         words
     }
 
-    /// Taxels whose readings others replace, in ROM or of the bank that acts.
+    /// Taxels whose readings others replace, in ROM or of the active bank.
     fn dead(&self) -> Option<&DeadPlan> {
         self.plan.dead.as_ref().or(self.bank.as_ref().map(|bank| &bank.dead.dead))
     }
@@ -147,7 +147,7 @@ impl<'plan> Model<'plan> {
         self.dead().map_or(0, |dead| dead.taxels.len())
     }
 
-    /// Stress of a taxel that is noise, in steps of what was read: of the bank that acts, where there is one.
+    /// Stress of a taxel that is noise, in steps of what was read: of the active bank, where there is one.
     fn noise_floor(&self) -> i64 {
         self.bank.as_ref().map_or(self.plan.thresholds.taxel, |bank| i64::from(bank.noise))
     }

@@ -63,7 +63,7 @@ struct Control<'a> {
     now: u64,
     // Bz and CeAn
     next_open: u64,
-    /// When the next frame's first beat is at its door.
+    /// When the next frame's first beat waits.
     beat_there: u64,
     idle_since: Option<u64>,
     stress_buffers: u64,
@@ -172,7 +172,7 @@ impl<'a> Control<'a> {
         }
     }
 
-    /// Plays frames that wait at the door; returns the cycle after the last beat out of each, the first beat in being
+    /// Plays frames that wait at the input; returns the cycle after the last beat out of each, the first beat in being
     /// in cycle 0.
     fn play(mut self, frames: usize) -> Vec<u64> {
         let mut left = frames;
