@@ -40,7 +40,7 @@ pub fn name_of(file: &Path) -> Option<String> {
 /// A latency to meet.
 #[derive(clap::Args)]
 pub struct Target {
-    /// Take the fewest lanes whose latency is at most this many microseconds, in place of the design's.
+    /// Take the fewest lanes whose latency is at most this many microseconds.
     #[arg(long, value_name = "US", value_parser = microseconds)]
     pub target_us: Option<f64>,
 }
@@ -53,8 +53,12 @@ fn microseconds(text: &str) -> Result<f64, String> {
 
 /// Parses one of the words of an enum, those that serde knows its variants by.
 pub fn word<T: DeserializeOwned + Clone + Send + Sync + 'static>() -> impl TypedValueParser<Value = T> {
-    let words = words::read::<T>("").err().map_or(&[][..], |unknown| unknown.allowed);
-    PossibleValuesParser::new(words).try_map(|word| words::read::<T>(&word))
+    PossibleValuesParser::new(words_of::<T>()).try_map(|word| words::read::<T>(&word))
+}
+
+/// The words of an enum.
+pub fn words_of<T: DeserializeOwned>() -> &'static [&'static str] {
+    words::read::<T>("").err().map_or(&[], |unknown| unknown.allowed)
 }
 
 #[cfg(test)]

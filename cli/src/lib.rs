@@ -112,14 +112,19 @@ mod tests {
                 let takes = !matches!(option.get_action(), ArgAction::SetTrue);
                 let values: Vec<_> = if takes { values.collect() } else { Vec::new() };
                 let shown = name.into_iter().chain(values).collect::<Vec<_>>().join(" ");
-                let help = option.get_help().map(ToString::to_string).unwrap_or_default();
+                let help = option.get_long_help().or(option.get_help()).map(ToString::to_string).unwrap_or_default();
+                let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+                let help = help.trim_end_matches('.');
                 let words: Vec<_> =
                     option.get_possible_values().iter().map(|word| format!("`{}`", word.get_name())).collect();
-                let words =
-                    if takes && !words.is_empty() { format!(" One of {}.", words.join(", ")) } else { String::new() };
+                let words = if takes && !words.is_empty() && !option.is_hide_possible_values_set() {
+                    format!(" One of {}.", words.join(", "))
+                } else {
+                    String::new()
+                };
                 let default =
                     option.get_default_values().iter().map(|value| value.to_string_lossy()).collect::<Vec<_>>();
-                let default = if takes && !default.is_empty() {
+                let default = if takes && !default.is_empty() && !option.is_hide_default_value_set() {
                     format!(" Default: `{}`.", default.join(" "))
                 } else {
                     String::new()
@@ -152,8 +157,12 @@ mod tests {
             assert!(help.contains(&format!("sptfra {}", sub.get_name())), "{} has no example", sub.get_name());
             assert!(sub.get_about().is_some_and(|about| !about.to_string().contains('\n')), "{}", sub.get_name());
             for option in sub.get_arguments() {
-                let line = option.get_help().map(ToString::to_string).unwrap_or_default();
-                assert!(!line.is_empty() && line.len() <= 140, "{} --{}: {line}", sub.get_name(), option.get_id());
+                assert!(option.get_help().is_some(), "{} --{}", sub.get_name(), option.get_id());
+            }
+            let short = sub.clone().render_help().to_string();
+            let (before, options) = short.split_once("Options:\n").expect("options");
+            for line in before.lines().chain(options.lines().take_while(|line| !line.is_empty())) {
+                assert!(line.len() <= 110, "{}: {} columns: {line}", sub.get_name(), line.len());
             }
         }
         command.debug_assert();

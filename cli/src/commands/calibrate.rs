@@ -52,16 +52,20 @@ pub struct Args {
     /// Seed of the contacts and of the training.
     #[arg(long, default_value_t = 1, conflicts_with_all = RECORDED)]
     seed: u64,
-    /// Training contacts: "sliding", round ones, or "general", of any shape, tilted, held; default: the design's.
-    #[arg(long, value_parser = word::<TrainingSet>(), conflicts_with_all = RECORDED)]
+    /// Training set; default: the design's.
+    ///
+    /// `sliding`: round contacts. `general`: contacts of any shape, tilted, held.
+    #[arg(long, value_name = "SET", value_parser = word::<TrainingSet>(), conflicts_with_all = RECORDED)]
     training_set: Option<TrainingSet>,
-    /// Hidden units of the correction, 0 for none; default: 128, with "sliding" 64, with --quick 24.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256), conflicts_with_all = RECORDED)]
+    /// Hidden units of the correction; default: 128, sliding 64, --quick 24.
+    ///
+    /// 0 is a design without a correction.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=256), conflicts_with_all = RECORDED)]
     hidden: Option<u16>,
     /// Take a tenth of the time, to try it: the error may be twice as large.
     #[arg(long, conflicts_with_all = RECORDED)]
     quick: bool,
-    /// Take about ten times the time, for a network that is as exact with half of the hidden units.
+    /// Take about ten times the time: as exact with half of the hidden units.
     #[arg(long, conflicts_with_all = RECORDED, conflicts_with = "quick")]
     thorough: bool,
     /// Report as JSON.

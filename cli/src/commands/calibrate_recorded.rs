@@ -42,8 +42,9 @@ pub struct Recordings {
     /// Pressures measured with them (CSV or .npy), one line a frame.
     #[arg(long, value_name = "P.csv", requires = "uniform")]
     pressures: Option<PathBuf>,
-    /// Unloaded frames, then a weight that stays, with a column of times: measures creep. --labels and --columns are those of
-    /// all recordings.
+    /// Unloaded frames, then a weight that stays, with times: measures creep.
+    ///
+    /// The times are a column. --labels and --columns are those of all recordings.
     #[arg(long, value_name = "FRAMES.csv")]
     constant_load: Option<PathBuf>,
     #[command(flatten)]

@@ -33,13 +33,19 @@ pub struct Args {
     frames: PathBuf,
     #[command(flatten)]
     layout: LayoutArguments,
-    /// Nothing presses in the frames: report offsets, noise, drift, dead taxels, and the keys that suit the noise.
+    /// Nothing presses in the frames: report offsets, noise, drift and dead taxels.
+    ///
+    /// The report has the keys that suit the noise.
     #[arg(long)]
     unloaded: bool,
-    /// Frames of typical contacts, recorded like the others: `sensor.noise` is relative to their largest readings.
+    /// Frames of typical contacts, recorded like the others.
+    ///
+    /// `sensor.noise` is relative to their largest readings.
     #[arg(long, value_name = "FRAMES.csv", requires = "unloaded")]
     loaded: Option<PathBuf>,
-    /// Where to write the calibration that removes the offsets (lines gain,offset), for `sensor.calibration`.
+    /// Where to write the calibration that removes the offsets.
+    ///
+    /// It has lines gain,offset, for `sensor.calibration`.
     #[arg(long, value_name = "CALIBRATION.csv", requires = "unloaded")]
     out: Option<PathBuf>,
     /// Report as JSON.

@@ -14,7 +14,9 @@ use super::recording::LayoutArguments;
 
 #[derive(clap::Args)]
 pub struct FrameArguments {
-    /// Frames (CSV or .npy), one a line, in pascals or counts; default: a contact made for the sensor.
+    /// Frames (CSV or .npy), one a line; default: a contact made for the sensor.
+    ///
+    /// Frames are in pascals or counts.
     #[arg(long)]
     frames: Option<PathBuf>,
     #[command(flatten)]

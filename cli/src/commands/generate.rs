@@ -25,10 +25,12 @@ pub struct Args {
     /// Folder to write; default: rtl-out/NAME.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// File of your own board, for block design and device tree; its keys are those of hdl-gen/boards/zcu102.toml.
+    /// File of your own board, for block design and device tree.
+    ///
+    /// Its keys are those of hdl-gen/boards/zcu102.toml.
     #[arg(long = "board", value_name = "FILE")]
     boards: Vec<PathBuf>,
-    /// Prefix of the library's module names, for two cores of different versions in one project.
+    /// Prefix of the library's modules, for two cores of different versions in one project.
     #[arg(long, value_name = "NAME_")]
     prefix: Option<Prefix>,
     #[command(flatten)]

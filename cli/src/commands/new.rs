@@ -23,7 +23,9 @@ pub struct Args {
     /// Folder for the file.
     #[arg(long, default_value = ".")]
     dir: PathBuf,
-    /// Friction by a grid search with constants fitted to the sensor, or by the paper's line search.
+    /// How friction is found.
+    ///
+    /// `joint`: by a grid search, with constants fitted to the sensor. `line`: by the paper's line search.
     #[arg(long, value_parser = word::<Estimator>(), default_value = "joint")]
     estimator: Estimator,
     /// Taxels in x.
@@ -38,29 +40,33 @@ pub struct Args {
     /// Thickness of the layer above the taxels.
     #[arg(long, value_parser = length)]
     depth_mm: Option<f64>,
-    /// Reading of a taxel under tension: its stress, or nothing, as of most resistive and capacitive arrays.
+    /// Reading of a taxel under tension.
     ///
+    /// `read`: its stress. `clipped`: nothing, as of most resistive and capacitive arrays.
     /// Drag a finger over the array: if taxels behind it read less than without load, write `read`, else `clipped`.
     #[arg(long, value_parser = word::<Tension>())]
     tension: Option<Tension>,
     /// The first or second sensor of the paper; the options above change it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=2))]
     paper_sensor: Option<u8>,
-    /// Frames hold counts of a converter of this many bits: 0 without load, the largest at full scale.
+    /// Frames hold counts of a converter of this many bits.
     ///
-    /// If your counts fall under load, change the sign of `pa_per_count` in the file. Up to 16 bits the stream carries
+    /// A count is 0 without load, and the largest at full scale. If your counts fall under load, change the sign of `pa_per_count` in the file. Up to 16 bits the stream carries
     /// integers.
     #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(COUNT_BITS))]
     counts: Option<u32>,
     /// Stress at the end of the sensor's range; default: 100000.
     #[arg(long, value_name = "PA")]
     full_scale_pa: Option<f64>,
-    /// Standard deviation of a reading, as a share of the frame's largest reading: 1% or 0.01; default: 0.5%.
+    /// Standard deviation of a reading, as 1% of the frame's largest; default: 0.5%.
     ///
-    /// `sptfra calibrate` trains at up to 1.5 times this noise. `sptfra check --unloaded --loaded` measures it.
+    /// A share may be written too, as 0.01. `sptfra calibrate` trains at up to 1.5 times this noise.
+    /// `sptfra check --unloaded --loaded` measures it.
     #[arg(long, value_name = "SHARE", value_parser = share)]
     noise: Option<f64>,
-    /// Write design.schema.json too, the JSON schema by which editors explain, complete and check the keys.
+    /// Write design.schema.json too, for editors.
+    ///
+    /// It is the JSON schema by which they explain, complete and check the keys.
     #[arg(long)]
     schema: bool,
 }

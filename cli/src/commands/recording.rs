@@ -18,10 +18,14 @@ pub fn is_standard(path: &Path) -> bool {
 /// Where the values of a frame stand in its file.
 #[derive(clap::Args, Clone, Debug)]
 pub struct LayoutArguments {
-    /// Columns of labels before the values of a frame; the file may then have a header.
+    /// Columns of labels before the values of a frame.
+    ///
+    /// The file may then have a header.
     #[arg(long, value_name = "N", default_value_t = 0)]
     labels: usize,
-    /// First and last column of the values, from 1, where other columns follow them.
+    /// First and last column of the values, from 1.
+    ///
+    /// For files where other columns follow them.
     #[arg(long, value_name = "FIRST-LAST", value_parser = columns, conflicts_with = "labels")]
     columns: Option<[usize; 2]>,
     /// Lines to skip at the beginning of the file.

@@ -11,7 +11,7 @@ use golden::{forces, frames, geometry};
 use serde::Serialize;
 
 use super::recording::is_standard;
-use crate::arguments::{design_file, rows_file, word};
+use crate::arguments::{design_file, rows_file, word, words_of};
 use crate::message::{self, json_or};
 
 const EXAMPLE: &str = "Example:\n  sptfra scene scenes/sensor1-hertz.toml --out frames.csv\n  sptfra scene --design pad --kind held --out held.csv";
@@ -71,12 +71,15 @@ pub struct Args {
     /// Design file (TOML) whose sensor the frames are for; in counts, if it counts.
     #[arg(long, value_name = "DESIGN.toml", value_parser = design_file())]
     design: Option<PathBuf>,
-    /// Contacts of a kind, anywhere on the design's sensor and pushed in any direction, in place of a scene.
+    /// Contacts of a kind in place of a scene, anywhere on the sensor, in any direction.
     #[arg(long, value_parser = word::<Kind>(), requires = "design", conflicts_with = "scene")]
+    #[arg(hide_possible_values = true, long_help = format!("Contacts of a kind in place of a scene, anywhere on the sensor, in any direction: {}", words_of::<Kind>().join(", ")))]
     kind: Option<Kind>,
     #[command(flatten)]
     random: RandomContacts,
-    /// Where to write the frames (CSV, or .npy by its ending); `-`: the frames alone, on standard output.
+    /// Where to write the frames (CSV, or .npy by its ending); `-`: standard output.
+    ///
+    /// Standard output has the frames alone.
     #[arg(long, value_name = "FRAMES.csv", value_parser = rows_file())]
     out: PathBuf,
     /// Report as JSON.

@@ -32,7 +32,9 @@ pub struct Args {
     /// Design file (TOML).
     #[arg(value_parser = design_file())]
     design: PathBuf,
-    /// Frames (CSV or .npy), one a line, in pascals, compression negative, or in counts; `-`: standard input.
+    /// Frames (CSV or .npy), one a line, in pascals or counts; `-`: standard input.
+    ///
+    /// In pascals compression is negative.
     #[arg(long, value_name = "FRAMES.csv")]
     frames: PathBuf,
     #[command(flatten)]
@@ -43,7 +45,7 @@ pub struct Args {
     /// Write the forces of each taxel too.
     #[arg(long)]
     field: bool,
-    /// True forces of the same frames (CSV, as `sptfra scene` writes them), to report the errors.
+    /// True forces of the frames (CSV of `sptfra scene`), to report the errors.
     #[arg(long, value_name = "FORCES.csv")]
     reference: Option<PathBuf>,
     /// Report as JSON.

@@ -36,40 +36,52 @@ pub struct Args {
     /// Scene files (TOML) with known forces; default: a contact made for each sensor.
     #[arg(long = "scene", value_name = "SCENE.toml", num_args = 1..)]
     scenes: Vec<PathBuf>,
-    /// Filters, comma-separated: none, f1 and f2 (L and p from 10 to 90), f3 (of a design that has it), f1-40, f2-50.
+    /// Filters, comma-separated: none, f1, f2, f3, f1-40, f2-50.
+    ///
+    /// f1 and f2 take L and p from 10 to 90. f3 needs a design that has it.
     #[arg(long, value_delimiter = ',', value_parser = filter)]
     filters: Vec<FilterAxis>,
     /// Plans.
     #[arg(long, value_delimiter = ',', value_parser = word::<PlanKind>())]
     plans: Vec<PlanKind>,
     /// Widths of the coefficients in bits.
-    #[arg(long, value_delimiter = ',')]
+    #[arg(long, value_name = "BITS", value_delimiter = ',')]
     coefficient_bits: Vec<u32>,
     /// Widths of the vectors in bits.
-    #[arg(long, value_delimiter = ',')]
+    #[arg(long, value_name = "BITS", value_delimiter = ',')]
     data_bits: Vec<u32>,
     /// Numbers of lanes.
     #[arg(long, value_delimiter = ',')]
     lanes: Vec<usize>,
-    /// Estimators; the joint one needs a given design with its constants.
+    /// Estimators.
+    ///
+    /// `joint` needs a given design with its constants.
     #[arg(long, value_delimiter = ',', value_parser = word::<Estimator>())]
     estimators: Vec<Estimator>,
     /// Every combination: thousands of points.
     #[arg(long)]
     full: bool,
-    /// Which points to simulate in Verilator too, word by word.
-    #[arg(long, value_parser = word::<Simulate>(), default_value = "none", num_args = 0..=1, default_missing_value = "all")]
+    /// Points to simulate too.
+    ///
+    /// In Verilator, word by word.
+    #[arg(long, value_name = "POINTS", value_parser = word::<Simulate>(), default_value = "none", num_args = 0..=1, default_missing_value = "all")]
     simulate: Simulate,
-    /// Compare the points on this many frames of each kind of contact too; without a number: 40.
-    #[arg(long, value_name = "FRAMES", num_args = 0..=1, default_missing_value = "40", default_value_t = 0, hide_default_value = true)]
+    /// Compare the points on N frames of each kind of contact too; without N: 40.
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "40", default_value_t = 0, hide_default_value = true)]
     kinds: u64,
-    /// Folder for the points, sweep.json, sweep.csv, report.html and the recommended designs.
+    /// Folder for points, tables, report and designs.
+    ///
+    /// It gets the points, sweep.json, sweep.csv, report.html and the recommended designs.
     #[arg(long, value_name = "FOLDER", default_value = OUT)]
     out: PathBuf,
-    /// Write OUT/jobs/KEY for each point, with the files that `sptfra run` needs, and compute nothing.
+    /// Write a folder OUT/jobs/KEY for each point, and compute nothing.
+    ///
+    /// It has the files that `sptfra run` needs.
     #[arg(long, conflicts_with = "json")]
     prepare: bool,
-    /// Folder with reports KEY.json of such runs (`sptfra run --json`), used in place of simulations.
+    /// Folder with reports KEY.json of such runs, in place of simulations.
+    ///
+    /// `sptfra run --json` writes them.
     #[arg(long, value_name = "FOLDER")]
     runs: Option<PathBuf>,
     /// Print the points as JSON.
