@@ -89,11 +89,17 @@ fn the_calibration_takes_the_offsets_off() {
     let told = path("told.toml");
     fs::write(&told, text(&keys)).unwrap();
     let contacts = ["--unloaded", "--loaded", &loaded];
-    for (loaded, median, words) in [(&contacts[..], 5.0, "within 5.0 % of F_z"), (&contacts[..1], 80.0, "within 80 %")]
-    {
+    for (loaded, median, noise, words) in [
+        (&contacts[..], 5.0, "At a noise of 0.2", "within 5.0 % of F_z"),
+        (&contacts[..1], 80.0, "At the design's noise of 2 %", "within 80 %"),
+    ] {
         let asked = [&["check", &told, "--frames", &rest], loaded].concat();
         let said = |more: &[&str]| String::from_utf8(sptfra(&[&asked[..], more].concat()).stdout).unwrap();
-        assert!(said(&[]).contains(&format!(" expect the shear {words}")), "{}", said(&[]));
+        assert!(
+            said(&[]).contains(noise) && said(&[]).contains(&format!(" expect the shear {words}")),
+            "{}",
+            said(&[])
+        );
         let report: serde_json::Value = serde_json::from_str(&said(&["--json"])).unwrap();
         assert_eq!(report["expected_error"]["median_percent"], median);
     }
