@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::design::Design;
+use crate::frames::Frames;
 use crate::numbers::{magnitude, middle, rounded};
 
 /// Frames that a time constant has at least and at most: the hardware's fixed point holds these.
@@ -26,6 +27,8 @@ const RESTS: f64 = 0.02;
 const LEAST_RISE: f64 = 0.01;
 /// Frames or seconds, whichever is more, by which times may differ from even ones.
 const UNEVEN: [f64; 2] = [3.0, 0.1];
+/// Seconds from frame to frame from which on times without a unit may be milliseconds.
+const LONG: f64 = 0.5;
 /// Significant digits that are written.
 const DIGITS: i32 = 4;
 
@@ -111,6 +114,34 @@ pub struct Fitted {
     pub rise: f64,
     /// Standard deviation of the corrected readings under the load, as a share of their mean.
     pub residual_share: f64,
+}
+
+/// Mean seconds from frame to frame of a recording.
+///
+/// # Errors
+///
+/// As [`interval`]. No times, times that cannot be read, and long ones without a unit.
+pub fn interval_of(recording: &Frames) -> Result<f64, String> {
+    let Frames { times, clock, .. } = recording;
+    match (times, clock) {
+        (None, None) => {
+            Err("no column of times: name one before the values in the header, `time (s)` or `t (ms)`".to_owned())
+        }
+        (None, Some(clock)) => Err(format!(
+            "column {}, {}, holds no time that is understood: give numbers and name their unit, `time (s)` or `t (ms)`, or \
+             2026-03-01T12:00:00.5",
+            clock.column, clock.name
+        )),
+        (Some(times), clock) => match (interval(times)?, clock) {
+            (long, Some(clock)) if long >= LONG && !clock.has_unit => Err(format!(
+                "column {}, {}, without a unit would be {} s from frame to frame: name the unit, `time (ms)` or `time (s)`",
+                clock.column,
+                clock.name,
+                rounded(long, DIGITS)
+            )),
+            (interval, _) => Ok(interval),
+        },
+    }
 }
 
 /// Mean seconds from frame to frame, from their times in seconds. Clocks may be coarse, and single frames may be missing.

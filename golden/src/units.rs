@@ -5,17 +5,21 @@ const GRAVITY: f64 = 9.806_65;
 
 /// Seconds of the unit of a column of times, by its name; nothing for another column.
 pub(crate) fn seconds(name: &str) -> Option<f64> {
+    Some(match unit_of_time(name)?.as_str() {
+        "" | "s" | "sec" | "seconds" => 1.0,
+        "ms" | "millis" | "milliseconds" => 1e-3,
+        "us" | "µs" | "micros" | "microseconds" => 1e-6,
+        "ns" => 1e-9,
+        _ => return None,
+    })
+}
+
+/// The unit behind the name of a column of times, of any kind, empty without one; nothing for another column.
+pub(crate) fn unit_of_time(name: &str) -> Option<String> {
     let lower = name.to_lowercase();
     let mut words = lower.split(|c: char| !c.is_alphanumeric() && c != 'µ').filter(|word| !word.is_empty());
     let is_time = matches!(words.next()?, "t" | "time" | "timestamp" | "datetime" | "zeit");
-    let unit = match words.next() {
-        None | Some("s" | "sec" | "seconds") => 1.0,
-        Some("ms" | "millis" | "milliseconds") => 1e-3,
-        Some("us" | "µs" | "micros" | "microseconds") => 1e-6,
-        Some("ns") => 1e-9,
-        Some(_) => return None,
-    };
-    is_time.then_some(unit)
+    is_time.then(|| words.next().unwrap_or_default().to_owned())
 }
 
 /// Seconds since 1970 of a time stamp of ISO 8601, such as 2026-03-01T12:00:00.123: with T or a space, without a zone or with

@@ -9,7 +9,6 @@ use golden::check::check;
 use golden::choose::rebase_scenes;
 use golden::creep::{self, Creep};
 use golden::design::{Design, Filter};
-use golden::frames::Frames;
 use golden::matrices::Matrices;
 use golden::output::write_together;
 use golden::progress::Progress;
@@ -24,6 +23,8 @@ use crate::message::{self, json_or, say};
 const ROUNDS: usize = 10;
 /// They end when readings without creep change by less than this share of the largest.
 const SETTLED: f64 = 1e-3;
+/// Median and worst error of loads, in percent, above which frames without times may be missing.
+const MISSING: [f64; 2] = [15.0, 100.0];
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
@@ -129,6 +130,9 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
         found_creep = find_creep(&fitted.0)?;
     }
     let (mut design, mut results) = fitted;
+    if let (Some(pressed), Some(found)) = (&given[1], &results[1]) {
+        pressed.refuse_missing(found)?;
+    }
     if let Some(found) = results.iter_mut().flatten().last().filter(|_| !settled) {
         found.remarks.push(format!(
             "creep and what counts mean still change after {ROUNDS} rounds of fits: calibrate {} again with these recordings",
@@ -184,8 +188,11 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
 struct Pressed<'a> {
     file: &'a Path,
     frames: Vec<Vec<f64>>,
-    times: Option<Vec<f64>>,
+    /// Seconds from frame to frame, or why they are unknown; nothing without times.
+    interval: Option<std::result::Result<f64, String>>,
     measured: Measured,
+    /// Whether both files have times.
+    has_times: bool,
     /// The frames without creep.
     freed: Vec<Vec<f64>>,
 }
@@ -200,13 +207,30 @@ impl<'a> Pressed<'a> {
         let Some((file, measured)) = files else { return Ok(None) };
         let recording = Recording { file, layout: layout.layout() }.read_all(design)?;
         let table = table(measured)?;
+        let has_times = recording.times.is_some() && table.times.is_some();
         let table = match &recording.times {
-            Some(times) if table.times.is_some() => table.at(times),
+            Some(times) if has_times => table.at(times),
             _ => Ok(table.without_skipped(&recording)),
         };
         let measured = table.map_err(|problem| format!("{}: {problem}", measured.display()))?;
-        let Frames { frames, times, .. } = recording;
-        Ok(Some(Self { file, frames, times, measured, freed: Vec::new() }))
+        let interval = recording.times.as_ref().map(|_| creep::interval_of(&recording));
+        Ok(Some(Self { file, frames: recording.frames, interval, measured, has_times, freed: Vec::new() }))
+    }
+
+    /// Refuses large errors of what was paired line by line.
+    fn refuse_missing(&self, found: &Recorded) -> std::result::Result<(), String> {
+        let Some(errors) = found.errors.as_ref().or(found.errors_fitted.as_ref()) else { return Ok(()) };
+        let [median, worst] = MISSING;
+        if self.has_times || errors.median <= median && errors.worst <= worst {
+            return Ok(());
+        }
+        Err(format!(
+            "{}: F_z errs by {:.0} % in the median, {:.0} % at worst; frames may be missing: give a column of times in both \
+             files",
+            self.file.display(),
+            errors.median,
+            errors.worst
+        ))
     }
 
     /// Takes creep off the frames as a design reads them; whether that changes what it was before.
@@ -214,7 +238,7 @@ impl<'a> Pressed<'a> {
         let mut freed = self.frames.clone();
         if let Some(creep) = creep {
             // The recording may have another rate than the frames to come.
-            let interval = self.times.as_deref().map(creep::interval).transpose();
+            let interval = self.interval.clone().transpose();
             let interval = interval.map_err(|problem| format!("{}: {problem}", self.file.display()))?;
             let rate = interval.map_or(creep.frames_per_second, |interval| 1.0 / interval);
             Creep { frames_per_second: rate, ..creep }.remove_from_recording(design, &mut freed);
@@ -250,12 +274,9 @@ struct Weight<'a> {
 
 impl<'a> Weight<'a> {
     fn read(file: &'a Path, layout: &LayoutArguments, design: &Design) -> Result<Self> {
-        let Frames { frames, times, .. } = Recording { file, layout: layout.layout() }.read_all(design)?;
-        let times = times.ok_or_else(|| {
-            "no column of times: name one before the values in the header, `time (s)` or `t (ms)`".to_owned()
-        });
-        let seconds = times.and_then(|times| creep::interval(&times));
-        Ok(Self { file, frames, seconds: seconds.map_err(|problem| format!("{}: {problem}", file.display()))? })
+        let recording = Recording { file, layout: layout.layout() }.read_all(design)?;
+        let seconds = creep::interval_of(&recording).map_err(|problem| format!("{}: {problem}", file.display()))?;
+        Ok(Self { file, frames: recording.frames, seconds })
     }
 
     /// The creep that a design finds in it.
@@ -288,13 +309,14 @@ fn text(report: &Report<'_>) -> String {
         }
     }
     if let Some(creep::Fitted { creep, held_s, rise, residual_share }) = &report.creep {
+        let rate = creep.frames_per_second;
+        let rate = if rate < 1.0 { rate.to_string() } else { format!("{rate:.1}") };
         say!(text, "from constant load: the readings rise by {:.1} % in {held_s:.1} s", 100.0 * rise);
         say!(
             text,
-            "  creep       strength {:.3}, time constant {:.2} s at {:.1} frames a second; corrected, readings vary by {:.1} % of their mean",
+            "  creep       strength {:.3}, time constant {:.2} s at {rate} frames a second; corrected, readings vary by {:.1} % of their mean",
             creep.strength,
             creep.seconds,
-            creep.frames_per_second,
             100.0 * residual_share
         );
     }

@@ -99,10 +99,8 @@ pub fn run(
     }
     if let Some(expected) = &report.expected_error {
         let expected = expected.to_string();
-        match noise_of_contacts {
-            Some(_) => say!(text, "{expected}"),
-            None => say!(text, "{}", expected.replacen("At a noise", "At the design's noise", 1)),
-        }
+        let of = if noise_of_contacts.is_some() { "At a noise" } else { "At the design's noise" };
+        say!(text, "{}", expected.replacen("At a noise", of, 1));
     }
     say!(text, "[algorithm] noise_floor_pa = {:.1}  # three standard deviations", ceil(rest.noise_floor_pa));
     if rest.noise_of_full_scale > 0.0 && design.algorithm.regularisation.factor() > 0.0 {

@@ -116,6 +116,51 @@ fn from_recordings_to_a_design() {
     assert!(!output.status.success() && String::from_utf8(output.stderr).unwrap().contains("overwrite the input"));
 }
 
+/// With one press in each part of the logs, the errors alone tell of frames that are missing.
+#[test]
+fn frames_that_may_be_missing_are_told_of() {
+    let folder = TempDir::new().unwrap();
+    let [pad, frames, forces, out] =
+        ["pad.toml", "press.csv", "weights.csv", "out.toml"].map(|name| folder.path().join(name));
+    let sensor = "[sensor]\ncolumns = 6\nrows = 13\npitch_mm = [3.4, 3.4]\ndepth_mm = 3.0\n";
+    fs::write(&pad, format!("{PLAIN}name = \"pad\"\n{sensor}tension = \"clipped\"\npa_per_count = -40.0\n")).unwrap();
+    let recording = record(&Recipe {
+        scale: 40.0,
+        noise: 2.0,
+        places: 4,
+        loads: vec![2.0, 5.0],
+        frames: 48,
+        ..Recipe::new(81, Indenter::Disc)
+    });
+    let names = |with_times: bool| if with_times { "time (s)," } else { "" };
+    let time = |with_times: bool, frame: usize| if with_times { format!("{frame},") } else { String::new() };
+    let calibrate = |lost: std::ops::Range<usize>, with_times: bool| {
+        let taxels: Vec<String> = (0..78).map(|taxel| format!("p{taxel}")).collect();
+        let mut text_of = names(with_times).to_owned() + &taxels.join(",") + "\n";
+        for (number, frame) in recording.frames.iter().enumerate().filter(|(number, _)| !lost.contains(number)) {
+            let counts: Vec<String> = frame.iter().map(f64::to_string).collect();
+            text_of += &(time(with_times, number) + &counts.join(",") + "\n");
+        }
+        fs::write(&frames, text_of).unwrap();
+        let force = |(number, force): (usize, &[Option<f64>; 3])| {
+            format!("{}{}\n", time(with_times, number), force[2].unwrap())
+        };
+        let lines: String = recording.measured.forces.iter().enumerate().map(force).collect();
+        fs::write(&forces, format!("{}F_z (N)\n{lines}", names(with_times))).unwrap();
+        let paths = ["--frames", text(&frames), "--forces", text(&forces), "--out", text(&out)];
+        sptfra(&[&["calibrate", text(&pad)], &paths[..]].concat())
+    };
+    let refused = calibrate(120..123, false);
+    let said = String::from_utf8(refused.stderr).unwrap();
+    for part in ["press.csv: F_z errs by", "frames may be missing: give a column of times in both files"] {
+        assert!(!refused.status.success() && said.contains(part), "{said}");
+    }
+    assert!(!out.exists());
+    let output = calibrate(120..123, true);
+    let said = String::from_utf8(output.stdout.clone()).unwrap();
+    assert!(output.status.success() && said.contains("paired by their times"), "{output:?}");
+}
+
 /// What other commands warn of, of the frames as the calibrated design reads them: sign and unit are what was fitted.
 #[test]
 fn frames_of_another_order_are_told_of() {

@@ -1,9 +1,11 @@
 //! What the lines above the frames say: which columns hold the taxels, in which order and unit, and which one times.
 
+use super::Clock;
 use super::layout::{Layout, Target};
+use crate::numbers::sorted;
 use crate::sensor::Sensor;
 use crate::separator;
-use crate::units::{pascals, seconds};
+use crate::units::{pascals, seconds, unit_of_time};
 
 /// So few numbers in turn may be a frame: no sensor has fewer taxels.
 const FEWEST_NUMBERED: usize = 4;
@@ -21,6 +23,8 @@ pub(super) struct Header {
     pub(super) order: Option<Vec<usize>>,
     /// Which column holds times, and seconds of their unit.
     pub(super) time: Option<(usize, f64)>,
+    /// The first column before the values that is named as one of times, whether they can be read or not.
+    pub(super) clock: Option<Clock>,
     /// Pascals of a value.
     pub(super) unit: Option<f64>,
     /// What is to be said of it, and of which line.
@@ -49,6 +53,10 @@ impl Header {
         let [from, to] = header.columns.or(layout.columns).unwrap_or([layout.labels + 1, layout.labels + taxels]);
         let before = from.saturating_sub(1).min(names.len());
         header.time = names[..before].iter().enumerate().find_map(|(column, name)| Some((column, seconds(name)?)));
+        header.clock = names[..before].iter().enumerate().find_map(|(column, name)| {
+            let has_unit = !unit_of_time(name)?.is_empty();
+            Some(Clock { column: column + 1, name: name.clone(), has_unit })
+        });
         let Some(values) = names.get(from.saturating_sub(1)..to).filter(|values| values.len() == taxels) else {
             return Ok(header);
         };
@@ -197,7 +205,8 @@ pub(super) fn guessed(rows: &[Vec<f64>], labels: &[bool]) -> Option<Vec<bool>> {
     let again: Vec<bool> = (0..rows.len()).map(|row| rows[row] == *first && labels[row] == labels[0]).collect();
     let others = || (0..rows.len()).filter(|&row| !again[row]);
     let ascend = ascends(first) && !others().any(|row| ascends(&rows[row]));
-    let is_labelled = is_whole(first) && !labels[0] && others().all(|row| labels[row]);
+    // Numbers of columns differ; counts of a frame often do not.
+    let is_labelled = is_whole(first) && differ(first) && !labels[0] && others().all(|row| labels[row]);
     let is_header =
         others().next().is_some() && !again.windows(2).any(|pair| pair[0] && pair[1]) && (ascend || is_labelled);
     is_header.then_some(again)
@@ -206,6 +215,12 @@ pub(super) fn guessed(rows: &[Vec<f64>], labels: &[bool]) -> Option<Vec<bool>> {
 /// Whether all values are those of a count from 0 on.
 fn is_whole(row: &[f64]) -> bool {
     row.len() >= FEWEST_NUMBERED && row.iter().all(|&value| value >= 0.0 && value.fract() == 0.0)
+}
+
+/// Whether no two values are the same.
+fn differ(row: &[f64]) -> bool {
+    let sorted = sorted(row.iter().copied());
+    sorted.windows(2).all(|pair| pair[0] < pair[1])
 }
 
 /// Whether values are whole and each is larger than the one before, as the numbers of a sensor's taxels with gaps.

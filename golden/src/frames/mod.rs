@@ -30,6 +30,17 @@ use crate::design::Design;
 use crate::output;
 use crate::sensor::Sensor;
 
+/// A column of times before the values.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Clock {
+    /// From 1.
+    pub column: usize,
+    /// As the header names it.
+    pub name: String,
+    /// Whether the name says in which unit it counts.
+    pub has_unit: bool,
+}
+
 /// Frames of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frames {
@@ -38,6 +49,8 @@ pub struct Frames {
     /// The time of each frame in seconds, where the file's header names a column of times before the values, or one has time
     /// stamps.
     pub times: Option<Vec<f64>>,
+    /// The column that the header names as one of times.
+    pub clock: Option<Clock>,
     /// Frames that were left out (`--skip-bad`), by their place among all in the file, from 0.
     pub skipped: Vec<usize>,
     /// What was taken for what, on one line.
@@ -113,7 +126,7 @@ pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -
         let remark = (!remarks.is_empty()).then(|| remarks.join("; "));
         let has_times = times.len() == frames.len() && times.iter().all(|time| time.is_finite());
         let times = has_times.then_some(times);
-        return Ok(Frames { frames, times, skipped, remark });
+        return Ok(Frames { frames, times, clock: header.clock, skipped, remark });
     };
     let place = match lines.get(frame) {
         Some(line) => format!("line {line}, column {}", header.column(labels, column)),

@@ -6,6 +6,7 @@ use super::header::{self, Header};
 use super::layout::{Layout, Target};
 use super::{FrameError, blocks, hints, is_number};
 use crate::geometry;
+use crate::numbers::magnitude;
 use crate::separator::{self, Marks, Separator, foreign, is_unknown, no_number};
 use crate::units::{pascals, timestamp};
 
@@ -402,7 +403,7 @@ pub(super) fn read(
         && let Some(is_head) = header::guessed(&text.rows, &labels)
     {
         lines.number = text.lines[0];
-        lines.numbered(text.rows[0][text.rows[0].len() - 1]);
+        lines.numbered(magnitude(&text.rows[0]));
         let kept = || is_head.iter().map(|is_head| !is_head);
         let [mut of_rows, mut of_lines, mut of_times] = [kept(), kept(), kept()];
         text.rows.retain(|_| of_rows.next() == Some(true));

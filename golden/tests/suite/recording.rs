@@ -200,6 +200,8 @@ fn numbers_of_columns_are_a_header() {
         // With the index, and with a time beside it.
         (format!(",0,1,2,3,4,5\n0,{line}"), 1, 1, 5),
         (format!("0,1,2,3,4,5,6,7\n0,0.5,{line}"), 2, 1, 7),
+        // In another order, behind a word.
+        (format!("taxel,8,12,3,4,5,9\n0,{line}"), 1, 1, 12),
     ] {
         let (frames, remark) = read(&text, labels).unwrap_or_else(|error| panic!("{error}: {text:?}"));
         assert_eq!(frames, std::slice::from_ref(&frame), "{text:?}");
@@ -214,8 +216,10 @@ fn numbers_of_columns_are_a_header() {
         "0,-1,-2,-3,-4,-5\n",
         "a,b,c,d,e,f\n0,1,2,3,4,5\n",
         "1,0,2,3,4,6\n0,1,2,3,4,5\n",
+        // Counts that are alike, behind a word.
+        "start,0,0,1,7,2026,3\n1,0,0,1,7,2026,3\n2,4,4,4,4,4,4\n",
     ] {
-        let (frames, remark) = read(text, 0).unwrap();
+        let (frames, remark) = read(text, usize::from(text.starts_with("start"))).unwrap();
         assert_eq!(
             (frames.len(), remark),
             (text.lines().filter(|line| !line.starts_with('a')).count(), None),

@@ -267,7 +267,33 @@ fn creep_is_found_from_a_weight_that_stays() {
     let rise = |forces: &[f64]| forces[959] / forces[101] - 1.0;
     assert!(rise(&without) > 0.35 && rise(&with).abs() < 0.02, "{} {}", rise(&without), rise(&with));
 
-    let untimed = fs::read_to_string(&load).unwrap();
+    let timed = fs::read_to_string(&load).unwrap();
+    let clock = |name: &str, of: &dyn Fn(usize) -> String| {
+        let lines = timed.lines().enumerate().map(|(number, line)| {
+            let values = line.split_once(',').unwrap().1;
+            if number == 0 { format!("{name},{values}\n") } else { format!("{},{values}\n", of(number)) }
+        });
+        fs::write(&load, lines.collect::<String>()).unwrap();
+        let output = calibrate(&["--labels", "1"]);
+        (output.status.success(), String::from_utf8(output.stderr).unwrap())
+    };
+    let milliseconds = |number: usize| (50 * number).to_string();
+    let stamps = |number: usize| format!("01.03.2026 12:00:{number}");
+    for (name, of, said) in [
+        (
+            "time",
+            &milliseconds as &dyn Fn(usize) -> String,
+            "column 1, time, without a unit would be 50 s from frame to frame",
+        ),
+        ("timestamp", &|number| (1_772_366_400_000 + number as u64).to_string(), "name the unit, `time (ms)`"),
+        ("Zeit", &stamps, "column 1, Zeit, holds no time that is understood"),
+        ("time (min)", &milliseconds, "column 1, time (min), holds no time that is understood"),
+    ] {
+        let (succeeded, refused) = clock(name, of);
+        assert!(!succeeded && refused.contains(said), "{name}: {refused}");
+    }
+    assert!(clock("time (ms)", &milliseconds).0);
+    let untimed = timed;
     let untimed: String =
         untimed.lines().skip(1).map(|line| line.split_once(',').unwrap().1.to_owned() + "\n").collect();
     fs::write(&load, untimed).unwrap();
