@@ -97,7 +97,7 @@ fn the_wheel_works_in_an_empty_environment() {
         "22 frames with a person: ",
         "22 frames have no direction",
         "9335 frames a second on 97 DSP and 651.5 RAMB36",
-        "e_Fx: 2.18 %",
+        "e_Fx: 2.21 %",
         "frames simulated",
     ] {
         assert!(said.contains(stated), "no {stated:?} in:\n{said}");
