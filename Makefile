@@ -215,7 +215,7 @@ WIDE          := $(addprefix designs/,sensor1-wide.toml sensor2-wide.toml)
 CLIPPED       := designs/sensor1-clipped-wide.toml $(TEST_DESIGNS)/sensor2-clipped-wide.toml
 
 .PHONY: tables
-tables: tools ## Measure every table of errors anew, into results/ (an hour)
+tables: tools ## Measure the tables of errors anew, into results/ (an hour and a half)
 	@$(CARGO) build --quiet --release -p xtask
 	@$(XTASK_RELEASE) study noise $(FAST) designs/sensor1-fast-64.toml \
 	    designs/sensor1-fast-100.toml $(WIDE) $(CLIPPED) --out results/noise.csv

@@ -160,6 +160,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_table_keeps_what_is_said_of_its_rows() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("errors.csv");
+        std::fs::write(&path, "# about\n# designs: gone 0\n# more\na,b\n1,2\n# 3,4\n").expect("writable");
+        let text = "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
+                    [algorithm]\nestimator = \"line\"\ncount_contacts = false\n";
+        let pad = Design::from_toml(text, "pad.toml").expect("a design");
+        let hash = pad.hash();
+        renew_table(&path, &[("pad".to_owned(), pad)], "c,d", "5,6\n").expect("writable");
+        let found = std::fs::read_to_string(&path).expect("there");
+        assert_eq!(found, format!("# about\n# more\n# designs: pad {hash}\nc,d\n5,6\n"));
+        renew_table(&path, &[], "c,d", "7,8\n").expect("writable");
+        assert_eq!(std::fs::read_to_string(&path).expect("there"), "# about\n# more\nc,d\n7,8\n");
+    }
+
+    #[test]
     fn together_or_not_at_all() {
         let folder = tempfile::tempdir().expect("a folder");
         let [weights, new, design] = ["weights", "new", "design"].map(|name| folder.path().join(name));

@@ -309,14 +309,13 @@ fn text(report: &Report<'_>) -> String {
         }
     }
     if let Some(creep::Fitted { creep, held_s, rise, residual_share }) = &report.creep {
-        let rate = creep.frames_per_second;
-        let rate = if rate < 1.0 { rate.to_string() } else { format!("{rate:.1}") };
         say!(text, "from constant load: the readings rise by {:.1} % in {held_s:.1} s", 100.0 * rise);
         say!(
             text,
-            "  creep       strength {:.3}, time constant {:.2} s at {rate} frames a second; corrected, readings vary by {:.1} % of their mean",
+            "  creep       strength {:.3}, time constant {:.2} s at {} frames a second; corrected, readings vary by {:.1} % of their mean",
             creep.strength,
             creep.seconds,
+            creep.frames_per_second,
             100.0 * residual_share
         );
     }

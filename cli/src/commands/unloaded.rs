@@ -98,9 +98,8 @@ pub fn run(
         None => (),
     }
     if let Some(expected) = &report.expected_error {
-        let expected = expected.to_string();
-        let of = if noise_of_contacts.is_some() { "At a noise" } else { "At the design's noise" };
-        say!(text, "{}", expected.replacen("At a noise", of, 1));
+        let of = if noise_of_contacts.is_some() { "" } else { " This noise is the design's." };
+        say!(text, "{expected}{of}");
     }
     say!(text, "[algorithm] noise_floor_pa = {:.1}  # three standard deviations", ceil(rest.noise_floor_pa));
     if rest.noise_of_full_scale > 0.0 && design.algorithm.regularisation.factor() > 0.0 {

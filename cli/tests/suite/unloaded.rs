@@ -91,7 +91,7 @@ fn the_calibration_takes_the_offsets_off() {
     let contacts = ["--unloaded", "--loaded", &loaded];
     for (loaded, median, noise, words) in [
         (&contacts[..], 5.0, "At a noise of 0.2", "within 5.0 % of F_z"),
-        (&contacts[..1], 80.0, "At the design's noise of 2 %", "within 80 %"),
+        (&contacts[..1], 80.0, "This noise is the design's.", "within 80 %"),
     ] {
         let asked = [&["check", &told, "--frames", &rest], loaded].concat();
         let said = |more: &[&str]| String::from_utf8(sptfra(&[&asked[..], more].concat()).stdout).unwrap();
