@@ -152,8 +152,8 @@ tools: ## Install Verilator, Yosys and Icarus Verilog where they are missing
 	@tools/install.sh
 
 .PHONY: test-tools
-test-tools: ## What `tools` installs, and what only tests need: a browser where there is none, Python packages
-	@tools/install.sh browser
+test-tools: ## What `tools` installs, and what only tests need: a browser, the system's Verilator, Python packages
+	@tools/install.sh tests
 	@$(PIP_INSTALL) $(patsubst %,-r tools/requirements-%.txt,python book cocotb sweep)
 
 .PHONY: synth

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT OR Apache-2.0
 # Installs what building and checking the hardware needs: quick when all is there, asks nothing.
-# Python tools go into .venv with pinned versions; the rest comes from the system's packages. `install.sh browser` wants a
-# browser too, in which a test looks at the pages.
+# Python tools go into .venv with pinned versions; the rest comes from the system's packages. `install.sh tests` wants
+# what only tests use too: a browser for the pages, and the system's Verilator, which is years older.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -24,7 +24,8 @@ have dtc && have fdtoverlay || wanted="$wanted device-tree-compiler"
 # What the boards' processors run, libraries for the linker included: 81 MB to fetch.
 have aarch64-linux-gnu-gcc || wanted="$wanted gcc-aarch64-linux-gnu libc6-dev-arm64-cross"
 have arm-linux-gnueabihf-gcc || wanted="$wanted gcc-arm-linux-gnueabihf libc6-dev-armhf-cross"
-if [ "${1:-}" = browser ]; then
+if [ "${1:-}" = tests ]; then
+    have verilator || wanted="$wanted verilator"
     have chromium || have chromium-browser || have google-chrome || wanted="$wanted chromium"
 fi
 if have "${CXX:-g++}"; then
@@ -55,7 +56,7 @@ if [ -n "$needed$wanted" ]; then
     else
         [ -z "$needed" ] || fail "missing:$needed. Not root, so nothing was installed: please install them (Debian names)"
         say "missing, and not root:$wanted (Debian names). 'make run' works without;"
-        say "'make test' needs iverilog, tcl, dtc and chromium, and looks at less without the compilers for Arm; zlib and lz4 headers make traces FST in place of VCD"
+        say "'make test' needs iverilog, tcl, dtc, verilator and chromium, and looks at less without the compilers for Arm; zlib and lz4 headers make traces FST in place of VCD"
     fi
 fi
 

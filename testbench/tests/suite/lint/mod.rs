@@ -157,6 +157,16 @@ fn verilator_accepts_every_module_as_a_top() {
     }));
 }
 
+/// The system's Verilator, in Debian 12 release 5.006, has no waiver either.
+#[test]
+fn the_systems_verilator_accepts_every_design() {
+    assert_silent(in_parallel(&covering(&all()), |written| {
+        let mut verilator = Command::new("verilator");
+        verilator.args(["--lint-only", "-Wall", "--top-module", &written.name]).args(written.sources());
+        vec![written.run(verilator)]
+    }));
+}
+
 #[test]
 fn icarus_accepts_every_module_as_a_top() {
     assert_silent(in_parallel(&tops(&all()), |(written, modules)| {
