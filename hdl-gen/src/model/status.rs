@@ -10,7 +10,7 @@ pub const DIRECTION_UNKNOWN: u32 = Status::DIRECTION_UNKNOWN.0;
 pub const AT_BOUND: u32 = Status::AT_BOUND.0;
 /// An input beyond the full scale, or a clipped intermediate.
 pub const SATURATED: u32 = Status::SATURATED.0;
-/// NaN or infinity in.
+/// NaN or infinity.
 pub const NOT_FINITE: u32 = Status::NOT_FINITE.0;
 /// Early or late TLAST.
 pub const BAD_LENGTH: u32 = Status::BAD_LENGTH.0;

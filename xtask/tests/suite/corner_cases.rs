@@ -153,7 +153,7 @@ fn statuses_say_what_a_frame_is() {
         ("no contact", "no contact"),
         ("no tension", "direction unknown"),
         ("one taxel", "direction unknown"),
-        ("NaN and infinities", "NaN or infinity in"),
+        ("NaN and infinities", "NaN or infinity"),
         ("peak at one step", "no contact"),
         ("peak at twice the full scale", "saturated"),
         ("a taxel beyond the full scale", "saturated"),

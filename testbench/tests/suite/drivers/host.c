@@ -161,7 +161,7 @@ static void check_result(const sptfra_shape *shape)
     for (bit = 0; bit < 16; bit++) {
         CHECK((sptfra_status_name(bit) != NULL) == (bit < 13));
     }
-    CHECK(strcmp(sptfra_status_name(4), "NaN or infinity in") == 0 && SPTFRA_NOT_FINITE == 1 << 4);
+    CHECK(strcmp(sptfra_status_name(4), "NaN or infinity") == 0 && SPTFRA_NOT_FINITE == 1 << 4);
 }
 
 static void check_uio(void)

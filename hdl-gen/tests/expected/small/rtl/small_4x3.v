@@ -17,8 +17,8 @@
 //    1  direction unknown      8  dead taxel replaced
 //    2  optimum at the bound   9  too many replaced
 //    3  saturated             10  slip
-//    4  NaN or infinity in    11  no tension
-//    5  frame length wrong    12  frames dropped before
+//    4  NaN or infinity       11  no tension
+//    5  wrong frame length    12  frames dropped before
 //    6  low confidence
 
 `default_nettype none
