@@ -8,7 +8,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::kernel::{self, Kernel};
-use crate::parity::{CLASSES, Quads};
+use crate::parity::{COMPONENTS, Orbits};
 use crate::sensor::Sensor;
 
 /// Most taxels of a sensor that can be replaced.
@@ -77,7 +77,7 @@ impl DeadTaxels {
 /// Like C33 the covariance commutes with both mirrors of the grid, so it is factorised in blocks of a quarter of its size.
 fn precision(sensor: &Sensor, kernel: Kernel, dead: &[usize]) -> Vec<Vec<f64>> {
     let [_, _, c33] = &kernel::folded(sensor, kernel);
-    let quads = Quads::new(sensor.columns, sensor.rows);
+    let orbits = Orbits::new(sensor.columns, sensor.rows);
     // C33 is its own transpose: equal offsets, equal stresses.
     let square = c33.times(c33);
     let mut blocks = square.times(&square).blocks;
@@ -89,13 +89,13 @@ fn precision(sensor: &Sensor, kernel: Kernel, dead: &[usize]) -> Vec<Vec<f64>> {
     let column = |&taxel: &usize| {
         let mut unit = vec![0.0; sensor.taxels()];
         unit[taxel] = 1.0;
-        let folded = quads.fold(&unit);
-        let solved: [Vec<f64>; CLASSES] = std::array::from_fn(|class| {
-            let right = DVector::from_column_slice(&folded[class]);
+        let folded = orbits.fold(&unit);
+        let solved: [Vec<f64>; COMPONENTS] = std::array::from_fn(|component| {
+            let right = DVector::from_column_slice(&folded[component]);
             // Regular by the nugget.
-            factors[class].solve(&right).unwrap_or(right).as_slice().to_vec()
+            factors[component].solve(&right).unwrap_or(right).as_slice().to_vec()
         });
-        quads.unfold(&solved)
+        orbits.unfold(&solved)
     };
     dead.iter().map(column).collect()
 }

@@ -109,27 +109,27 @@ impl FilteredMatrices {
 /// Number of entries that a filter keeps of one of the 13 matrices, as [`FilteredMatrices::nnz`], without making the
 /// matrix whole: for sensors of thousands of taxels, whose filtered matrices nobody needs.
 pub fn nnz_of(matrices: &Matrices, name: MatrixName, filter: MatrixFilter) -> usize {
-    let quads = matrices.quads();
-    let m = quads.taxels();
+    let orbits = matrices.orbits();
+    let m = orbits.taxels();
     match filter {
         MatrixFilter::None => m * m,
         // l diagonals on either side have 1 + 2 + ... + l entries each.
         MatrixFilter::F1 { l } => m * m - l * (l + 1),
         MatrixFilter::F2 { p } => {
             let folded = matrices.folded(name);
-            (0..quads.count()).map(|q| rows_over_threshold(&folded, q, p)).sum()
+            (0..orbits.count()).map(|q| rows_over_threshold(&folded, q, p)).sum()
         }
     }
 }
 
-/// Entries that F2 keeps in all rows of quad q. They are the same but for their order and, in some rows of a matrix
+/// Entries that F2 keeps in all rows of orbit q. They are the same but for their order and, in some rows of a matrix
 /// that changes parity, their sign, on which the threshold depends.
 fn rows_over_threshold(folded: &FoldedMatrix, q: usize, p: f64) -> usize {
-    let quads = &folded.quads;
-    let row: Vec<f64> = (0..quads.count())
+    let orbits = &folded.orbits;
+    let row: Vec<f64> = (0..orbits.count())
         .flat_map(|column| {
             let values = folded.values(q, column);
-            quads.distinct(column).map(move |(s, _)| values[s])
+            orbits.distinct(column).map(move |(s, _)| values[s])
         })
         .collect();
     let count = |sign: f64| {
@@ -137,7 +137,7 @@ fn rows_over_threshold(folded: &FoldedMatrix, q: usize, p: f64) -> usize {
         row.iter().filter(|value| value.abs() >= threshold).count()
     };
     let counts = [count(1.0), count(-1.0)];
-    quads.distinct(q).map(|(s, _)| counts[usize::from(sign(folded.parity, s) < 0.0)]).sum()
+    orbits.distinct(q).map(|(s, _)| counts[usize::from(sign(folded.parity, s) < 0.0)]).sum()
 }
 
 /// Applies a filter to one matrix (Pinto-Salamanca et al., Sensors 2024, section 2.6, as Table 1 counts it).

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::half_space;
-use crate::parity::{FoldedMatrix, Quads};
+use crate::parity::{FoldedMatrix, Orbits};
 use crate::sensor::Sensor;
 use crate::words::print_as_words;
 
@@ -89,9 +89,9 @@ pub fn matrices(sensor: &Sensor, kernel: Kernel) -> [DMatrix<f64>; 3] {
 /// C31, C32, C33 of a sensor as blocks: the first is odd in x, the second in y.
 pub fn folded(sensor: &Sensor, kernel: Kernel) -> [FoldedMatrix; 3] {
     let entries = Entries::new(sensor, kernel);
-    let quads = Quads::new(sensor.columns, sensor.rows);
+    let orbits = Orbits::new(sensor.columns, sensor.rows);
     [(0, 1), (1, 2), (2, 0)]
-        .map(|(axis, parity)| FoldedMatrix::from_fn(parity, &quads, |row, column| entries.at(axis, row, column)))
+        .map(|(axis, parity)| FoldedMatrix::from_fn(parity, &orbits, |row, column| entries.at(axis, row, column)))
 }
 
 /// The entries of C31, C32, C33 by the distance in grid steps, on which alone they depend: m of each.

@@ -60,7 +60,7 @@ impl MatrixName {
         self as usize
     }
 
-    /// What the matrix does to the class of a vector: bit 0 changes even and odd in x, bit 1 in y.
+    /// Its mirror symmetry: bit 0 if it changes even into odd in x and back, bit 1 in y.
     pub fn parity(self) -> usize {
         match self {
             Self::C33inv | Self::A3 | Self::D11 | Self::D22 | Self::D30 => 0,
@@ -128,7 +128,7 @@ impl ReducedName {
         self as usize
     }
 
-    /// What the matrix does to the class of a vector: bit 0 changes even and odd in x, bit 1 in y.
+    /// Its mirror symmetry: bit 0 if it changes even into odd in x and back, bit 1 in y.
     pub fn parity(self) -> usize {
         match self {
             Self::C33inv | Self::K0 | Self::C33 | Self::A3 => 0,

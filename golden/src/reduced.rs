@@ -19,26 +19,26 @@ use crate::float::Float;
 use crate::matrices::Matrices;
 use crate::names::MatrixName;
 pub use crate::names::ReducedName;
-use crate::parity::{CLASSES, FoldedMatrix, Quads};
+use crate::parity::{COMPONENTS, FoldedMatrix, Orbits};
 use crate::sums::{ByPq, RESULTANTS};
 
 /// The four blocks of a matrix, sparse, row by row.
 ///
-/// All classes keep the same entries, so that one column number serves four coefficients.
+/// All components keep the same entries, so that one column number serves four coefficients.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoldedRows {
-    /// What the matrix does to a class, as in [`FoldedMatrix`].
+    /// Its mirror symmetry, as in [`FoldedMatrix`].
     pub parity: usize,
-    /// For each quad its entries, columns ascending: the quad multiplied and the coefficient by the operand's class.
-    /// No row is empty.
-    pub rows: Vec<Vec<(u32, [f64; CLASSES])>>,
+    /// For each orbit its entries, columns ascending: the orbit multiplied, and a coefficient for each component of the
+    /// operand. No row is empty.
+    pub rows: Vec<Vec<(u32, [f64; COMPONENTS])>>,
 }
 
 impl FoldedRows {
-    /// The product with a folded vector, the four classes of each element together.
-    pub fn times<T: Float>(&self, x: &[[T; CLASSES]], result: &mut [[T; CLASSES]]) {
+    /// The product with a folded vector, the four components of each element together.
+    pub fn times<T: Float>(&self, x: &[[T; COMPONENTS]], result: &mut [[T; COMPONENTS]]) {
         for (row, result) in self.rows.iter().zip(result) {
-            let mut sums = [T::default(); CLASSES];
+            let mut sums = [T::default(); COMPONENTS];
             for (column, [a, b, c, d]) in row {
                 let x = &x[*column as usize];
                 sums[0] = sums[0] + T::of(*a) * x[0];
@@ -46,7 +46,7 @@ impl FoldedRows {
                 sums[2] = sums[2] + T::of(*c) * x[2];
                 sums[3] = sums[3] + T::of(*d) * x[3];
             }
-            *result = [0, 1, 2, 3].map(|class| sums[class ^ self.parity]);
+            *result = [0, 1, 2, 3].map(|component| sums[component ^ self.parity]);
         }
     }
 }
@@ -54,7 +54,7 @@ impl FoldedRows {
 impl From<&FoldedMatrix> for FoldedRows {
     /// All entries, unfiltered.
     fn from(folded: &FoldedMatrix) -> Self {
-        let n = folded.quads.count();
+        let n = folded.orbits.count();
         let entry = |row, column: usize| (column as u32, folded.blocks.each_ref().map(|block| block[(row, column)]));
         Self {
             parity: folded.parity,
@@ -63,22 +63,22 @@ impl From<&FoldedMatrix> for FoldedRows {
     }
 }
 
-/// A sum over all taxels as a dot product: `sum_q weights[q] * operand[class][q]` of a folded operand.
+/// A sum over all taxels as a dot product: `sum_q weights[q] * operand[component][q]` of a folded operand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SumRow {
-    /// The class that has the sum in it; the others add up to zero.
-    pub class: usize,
-    /// One weight for each quad.
+    /// The component that has the sum in it; the others add up to zero.
+    pub component: usize,
+    /// One weight for each orbit.
     pub weights: Vec<f64>,
 }
 
 impl SumRow {
     /// The sum for a folded operand.
-    pub fn apply(&self, x: &[Vec<f64>; CLASSES]) -> f64 {
-        self.weights.iter().zip(&x[self.class]).map(|(weight, value)| weight * value).sum()
+    pub fn apply(&self, x: &[Vec<f64>; COMPONENTS]) -> f64 {
+        self.weights.iter().zip(&x[self.component]).map(|(weight, value)| weight * value).sum()
     }
 
-    /// The row of this sum and another one of the same class.
+    /// The row of this sum and another one of the same component.
     fn plus(mut self, other: &Self) -> Self {
         self.weights.iter_mut().zip(&other.weights).for_each(|(weight, other)| *weight += other);
         self
@@ -96,12 +96,12 @@ pub(crate) struct SumRows {
 impl SumRows {
     /// Each resultant is a sum over the taxels of their forces times an arm: one, x or y from the middle of the grid, or
     /// minus that.
-    fn new(matrices: &Matrices, quads: &Quads, a: [&FoldedMatrix; 3]) -> Self {
+    fn new(matrices: &Matrices, orbits: &Orbits, a: [&FoldedMatrix; 3]) -> Self {
         let sensor = matrices.sensor();
-        let over = |class: usize, arm: &dyn Fn(usize) -> f64| {
-            let of_quad = |q: usize| quads.size(q) as f64 / 4.0 * arm(quads.members(q)[0]);
-            let weights = (0..quads.count()).map(|q| if quads.exists(class, q) { of_quad(q) } else { 0.0 });
-            SumRow { class, weights: weights.collect() }
+        let over = |component: usize, arm: &dyn Fn(usize) -> f64| {
+            let of_orbit = |q: usize| orbits.size(q) as f64 / 4.0 * arm(orbits.images(q)[0]);
+            let weights = (0..orbits.count()).map(|q| if orbits.exists(component, q) { of_orbit(q) } else { 0.0 });
+            SumRow { component, weights: weights.collect() }
         };
         let one = over(0, &|_| 1.0);
         let [x, minus_x] = [1.0, -1.0].map(|sign| over(1, &|taxel| sign * sensor.arm_m(taxel)[0]));
@@ -118,8 +118,8 @@ impl SumRows {
         let row = |p: usize, q: usize| {
             let c = [&matrices.c33, &matrices.c31, &matrices.c32][q];
             let mut parts = arms[p].iter().zip(a).filter_map(|(arm, a)| arm.map(|arm| sum_row(&sum_row(arm, a), c)));
-            // Every resultant has a part, and all parts of one are of one class.
-            let first = parts.next().unwrap_or_else(|| SumRow { class: 0, weights: vec![0.0; quads.count()] });
+            // Every resultant has a part, and all parts of one are of one component.
+            let first = parts.next().unwrap_or_else(|| SumRow { component: 0, weights: vec![0.0; orbits.count()] });
             let mut row = parts.fold(first, |row, part| row.plus(&part));
             if q > 0 {
                 row.weights.iter_mut().for_each(|weight| *weight = -*weight);
@@ -139,10 +139,11 @@ impl SumRows {
 
 /// The ten matrices of the reduced plan after the filter, and the rows of its sums.
 ///
-/// **What a filter means here.** It is applied to the folded blocks, whose rows and columns are quads. F2 with p keeps
+/// **What a filter means here.** It is applied to the folded blocks, whose rows and columns are orbits. F2 with p keeps
 /// of every row of every block the entries with `|B_ij| >= max_j |B_ij| / (1000 p)` (by magnitude: a folded row has no
 /// sign of its own). F1 with l keeps `|i - j| <= (n - 1) (1 - l / (m - 1))`, rounded down: the same share of the
-/// diagonals as of the whole matrix. An entry that one class keeps is kept for all four. The sums are never filtered.
+/// diagonals as of the whole matrix. An entry that one component keeps is kept for all four. The sums are never
+/// filtered.
 #[derive(Clone, Debug)]
 pub struct ReducedMatrices {
     ten: Vec<FoldedRows>,
@@ -156,7 +157,7 @@ impl ReducedMatrices {
     ///
     /// [`FilterError::Reduced`] for F3, whose choices are for the thirteen matrices of the paper,
     /// [`FilterError::EmptyFoldedRow`] when a row loses every entry.
-    pub fn new(matrices: &Matrices, quads: &Quads, filter: &Filter) -> Result<Self, FilterError> {
+    pub fn new(matrices: &Matrices, orbits: &Orbits, filter: &Filter) -> Result<Self, FilterError> {
         let rule = match filter {
             Filter::None => MatrixFilter::None,
             Filter::F1 { l } => MatrixFilter::F1 { l: *l },
@@ -166,9 +167,9 @@ impl ReducedMatrices {
         let Matrices { c31, c32, c33, .. } = matrices;
         let a = [MatrixName::A1, MatrixName::A2, MatrixName::A3].map(|name| matrices.folded(name));
 
-        let sums = SumRows::new(matrices, quads, a.each_ref().map(AsRef::as_ref));
+        let sums = SumRows::new(matrices, orbits, a.each_ref().map(AsRef::as_ref));
         let e = c33.times(&a[2]);
-        let sparse = |name: ReducedName, folded: &FoldedMatrix| filtered(name, folded, quads, rule);
+        let sparse = |name: ReducedName, folded: &FoldedMatrix| filtered(name, folded, orbits, rule);
         let ten = vec![
             sparse(ReducedName::C33inv, &matrices.folded(MatrixName::C33inv))?,
             sparse(ReducedName::K0, &c33.minus(&e.times(c33)))?,
@@ -206,31 +207,31 @@ impl ReducedMatrices {
         &self.sums
     }
 
-    /// Number of coefficients stored: four for each entry that any class keeps.
+    /// Number of coefficients stored: four for each entry that any component keeps.
     pub fn nnz(&self, name: ReducedName) -> usize {
-        CLASSES * self.get(name).rows.iter().map(Vec::len).sum::<usize>()
+        COMPONENTS * self.get(name).rows.iter().map(Vec::len).sum::<usize>()
     }
 }
 
 /// The row of the sum of `M x` for a row that sums `M x` from what M makes of x.
 fn sum_row(over_result: &SumRow, matrix: &FoldedMatrix) -> SumRow {
-    let class = over_result.class ^ matrix.parity;
-    let row = RowDVector::from_row_slice(&over_result.weights) * &matrix.blocks[class];
-    SumRow { class, weights: row.as_slice().to_vec() }
+    let component = over_result.component ^ matrix.parity;
+    let row = RowDVector::from_row_slice(&over_result.weights) * &matrix.blocks[component];
+    SumRow { component, weights: row.as_slice().to_vec() }
 }
 
 fn filtered(
     name: ReducedName,
     folded: &FoldedMatrix,
-    quads: &Quads,
+    orbits: &Orbits,
     filter: MatrixFilter,
 ) -> Result<FoldedRows, FilterError> {
-    let n = quads.count();
+    let n = orbits.count();
     // Row by row below, and the entries of a column are neighbours in memory.
     let blocks = folded.blocks.each_ref().map(DMatrix::transpose);
     let distance = match filter {
         // l is at most m - 2, so that the diagonal always stays.
-        MatrixFilter::F1 { l } => (n - 1) * (quads.taxels() - 1 - l) / (quads.taxels() - 1),
+        MatrixFilter::F1 { l } => (n - 1) * (orbits.taxels() - 1 - l) / (orbits.taxels() - 1),
         _ => n,
     };
     let rows = (0..n).map(|row| {
@@ -241,7 +242,7 @@ fn filtered(
         let keeps = |column: usize| match filter {
             MatrixFilter::None => true,
             MatrixFilter::F1 { .. } => row.abs_diff(column) <= distance,
-            // A zero is never kept for its own sake: a row that does not exist in a class has nothing but zeros.
+            // A zero is never kept for its own sake: a row that does not exist in a component has nothing but zeros.
             MatrixFilter::F2 { .. } => blocks.iter().zip(thresholds).any(|(block, threshold)| {
                 let entry = block[(column, row)].abs();
                 entry > 0.0 && entry >= threshold

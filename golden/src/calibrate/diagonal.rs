@@ -1,17 +1,14 @@
 //! The symmetry of a square: on a square grid with a square pitch, x and y may change places.
 //!
-//! The parity classes take care of both mirrors, whatever the weights. For the diagonal mirror weights are tied: each hidden
-//! unit has a partner, whose inputs are transposed and whose output is along the other axis. The network is then as
-//! symmetric as the grid, at no cost.
+//! The parity components take care of both mirrors, whatever the weights. For the diagonal mirror weights are tied.
+//! Each hidden unit has a partner, whose inputs are transposed and whose output is along the other axis. The network is
+//! then as symmetric as the grid, at no cost.
 
 use nalgebra::DMatrix;
 
 use crate::design::Sensor;
 use crate::estimators::joint::Correction;
-use crate::parity::CLASSES;
-
-/// The class that a parity class is of the transposed features.
-pub(super) const TRANSPOSED: [usize; CLASSES] = [0, 2, 1, 3];
+use crate::parity::{COMPONENTS, mirror, swapped};
 
 /// Whether x and y may change places on a sensor.
 pub(super) fn has_diagonal(sensor: &Sensor) -> bool {
@@ -24,23 +21,24 @@ pub(super) fn partner(unit: usize, units: usize) -> usize {
     if unit + 1 == units && unit.is_multiple_of(2) { unit } else { unit ^ 1 }
 }
 
-/// Where the inputs of each class go when the features are transposed.
+/// Where the inputs of each component go when the features are transposed.
 #[derive(Clone, Debug)]
 pub(super) struct Diagonal {
-    /// Of each input of a class, its place in the class that it goes to.
-    places: [Vec<usize>; CLASSES],
+    /// Of each input of a component, its place in the component that it goes to.
+    places: [Vec<usize>; COMPONENTS],
 }
 
 impl Diagonal {
-    pub(super) fn new(places: [Vec<usize>; CLASSES]) -> Self {
+    pub(super) fn new(places: [Vec<usize>; COMPONENTS]) -> Self {
         Self { places }
     }
 
-    /// The mean of what is known of each class and of what the transposed features would say: rows and columns are inputs.
-    pub(super) fn symmetrise(&self, of_classes: &mut [DMatrix<f64>; CLASSES]) {
-        let before = of_classes.clone();
-        for (class, matrix) in of_classes.iter_mut().enumerate() {
-            let (places, other) = (&self.places[class], &before[TRANSPOSED[class]]);
+    /// Replaces the matrix of each component by its mean with that of the transposed features. Rows and columns are
+    /// inputs.
+    pub(super) fn symmetrise(&self, of_components: &mut [DMatrix<f64>; COMPONENTS]) {
+        let before = of_components.clone();
+        for (component, matrix) in of_components.iter_mut().enumerate() {
+            let (places, other) = (&self.places[component], &before[swapped(component)]);
             for (row, &to_row) in places.iter().enumerate() {
                 for (column, &to_column) in places.iter().enumerate() {
                     matrix[(row, column)] = 0.5 * (matrix[(row, column)] + other[(to_row, to_column)]);
@@ -50,11 +48,11 @@ impl Diagonal {
     }
 
     /// Adds to what belongs to each unit (a row) and input what belongs to its partner's; both are then the same.
-    pub(super) fn add(&self, of_classes: &mut [DMatrix<f32>; CLASSES]) {
-        let before = of_classes.clone();
-        for (class, matrix) in of_classes.iter_mut().enumerate() {
-            let (other, units) = (&before[TRANSPOSED[class]], matrix.nrows());
-            for (mut column, &place) in matrix.column_iter_mut().zip(&self.places[class]) {
+    pub(super) fn add(&self, of_components: &mut [DMatrix<f32>; COMPONENTS]) {
+        let before = of_components.clone();
+        for (component, matrix) in of_components.iter_mut().enumerate() {
+            let (other, units) = (&before[swapped(component)], matrix.nrows());
+            for (mut column, &place) in matrix.column_iter_mut().zip(&self.places[component]) {
                 for unit in 0..units {
                     column[unit] += other[(partner(unit, units), place)];
                 }
@@ -78,7 +76,7 @@ pub(super) fn tie(correction: &mut Correction) {
     let (units, width) = (correction.hidden.len(), 2 * correction.half_window[0] + 1);
     let window = width * width;
     let transposed = |row: &[i32]| -> Vec<i32> {
-        let places = (0..window).map(|place| row[place % width * width + place / width]);
+        let places = (0..window).map(|place| row[mirror(place, width)]);
         places.chain([1, 0, 3, 2, 4].map(|extra| row[window + extra])).collect()
     };
     for unit in 0..units {

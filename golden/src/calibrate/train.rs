@@ -10,7 +10,7 @@ use super::whitening::Basis;
 use super::{Settings, Stage, diagonal};
 use crate::design::Sensor;
 use crate::estimators::joint::{self, Correction, LARGEST, TrainingSet, WEIGHT_FRACTION, WEIGHT_LIMIT};
-use crate::parity::{CLASSES, butterfly};
+use crate::parity::{COMPONENTS, butterfly};
 use crate::scene::normal;
 
 /// Samples of a step.
@@ -20,7 +20,7 @@ const RATE: f32 = 3e-3;
 /// Share of every weight that is forgotten for each unit of a step's length: it keeps the network from learning single
 /// contacts by heart.
 const DECAY: f32 = 0.1;
-/// The largest weight of a hidden unit. Up to here a parity class's share of a weight, a quarter of four's sum,
+/// The largest weight of a hidden unit. Up to here a parity component's share of a weight, a quarter of four's sum,
 /// is exact in the hardware's 18 bits.
 const LARGEST_WEIGHT: f64 = 7.9;
 /// The largest sum of a hidden unit's weights. The hardware rounds all units alike, as the largest sum demands, so all
@@ -67,7 +67,7 @@ pub(super) fn train(
     // Streams 0 and 1 of the seed made the samples.
     random.set_stream(2);
     let mut learner = Learner::new(&basis, settings.hidden + settings.spare, &mut random);
-    let mut batch = [0, 1, 2, 3].map(|class| DMatrix::zeros(basis.size(class), BATCH));
+    let mut batch = [0, 1, 2, 3].map(|component| DMatrix::zeros(basis.size(component), BATCH));
     let mut wanted = DMatrix::zeros(BATCH, 2);
     for step in 1..=settings.steps {
         for column in 0..BATCH {
@@ -95,12 +95,12 @@ fn spare_left(settings: &Settings, step: usize) -> usize {
 
 /// The network while it learns.
 struct Learner {
-    /// Weights of the hidden units (rows) on the whitened inputs of each class.
-    hidden: [Layer; CLASSES],
+    /// Weights of the hidden units (rows) on the whitened inputs of each component.
+    hidden: [Layer; COMPONENTS],
     /// Weights of the hidden units (rows) in both components.
     output: Layer,
     /// The hidden units (rows) of each mirror image of each sample of a step.
-    images: [DMatrix<f32>; CLASSES],
+    images: [DMatrix<f32>; COMPONENTS],
     /// Their part odd in x and odd in y.
     odd: [DMatrix<f32>; 2],
     /// Where the sensor is square, units have partners.
@@ -111,10 +111,10 @@ struct Learner {
 
 impl Learner {
     fn new(basis: &Basis, units: usize, random: &mut ChaCha8Rng) -> Self {
-        let inputs: usize = (0..CLASSES).map(|class| basis.size(class)).sum();
+        let inputs: usize = (0..COMPONENTS).map(|component| basis.size(component)).sum();
         let spread = (2.0 / inputs as f64).sqrt();
         let mut hidden = [0, 1, 2, 3]
-            .map(|class| DMatrix::from_fn(units, basis.size(class), |_, _| (spread * normal(random)) as f32));
+            .map(|component| DMatrix::from_fn(units, basis.size(component), |_, _| (spread * normal(random)) as f32));
         let spread = 0.03 / (units as f64).sqrt();
         let mut output = DMatrix::from_fn(units, 2, |_, _| (spread * normal(random)) as f32);
         let diagonal = basis.diagonal.clone();
@@ -137,8 +137,8 @@ impl Learner {
         }
     }
 
-    /// The correction of each sample (rows) in a batch of whitened features by class.
-    fn correct(&mut self, batch: &[DMatrix<f32>; CLASSES]) -> DMatrix<f32> {
+    /// The correction of each sample (rows) in a batch of whitened features by component.
+    fn correct(&mut self, batch: &[DMatrix<f32>; COMPONENTS]) -> DMatrix<f32> {
         for ((sums, layer), batch) in self.images.iter_mut().zip(&self.hidden).zip(batch) {
             layer.weights.mul_to(batch, sums);
         }
@@ -158,7 +158,7 @@ impl Learner {
     }
 
     /// One step, of a length and a number, towards the corrections `wanted`, a row for each sample of the batch.
-    fn descend(&mut self, batch: &[DMatrix<f32>; CLASSES], wanted: &DMatrix<f32>, (rate, step): (f32, usize)) {
+    fn descend(&mut self, batch: &[DMatrix<f32>; COMPONENTS], wanted: &DMatrix<f32>, (rate, step): (f32, usize)) {
         let mut errors = (self.correct(batch) - wanted) * (QUARTER / BATCH as f32);
         let soft = SOFT * (QUARTER / BATCH as f32);
         for mut error in errors.row_iter_mut() {
@@ -168,7 +168,7 @@ impl Learner {
         for (axis, odd) in self.odd.iter().enumerate() {
             slope.column_mut(axis).gemv(1.0, odd, &errors.column(axis), 0.0);
         }
-        // Back through the hinges: the units give way to the slopes of the classes' sums.
+        // Back through the rectifiers: the units give way to the slopes of the components' sums.
         let units = self.output.weights.nrows();
         let [along_x, along_y] = [0, 1].map(|axis| self.output.weights.column(axis));
         for sample in 0..BATCH {
@@ -184,7 +184,7 @@ impl Learner {
                 [*a, *b, *c, *d] = butterfly(slopes);
             }
         }
-        let mut slopes = [0, 1, 2, 3].map(|class| &self.images[class] * batch[class].transpose());
+        let mut slopes = [0, 1, 2, 3].map(|component| &self.images[component] * batch[component].transpose());
         if let Some(diagonal) = &self.diagonal {
             diagonal.add(&mut slopes);
             diagonal::add_output(&mut slope);
@@ -307,11 +307,11 @@ mod tests {
         (samples, basis, learner)
     }
 
-    fn batch(samples: &[Sample], basis: &Basis) -> [DMatrix<f32>; CLASSES] {
+    fn batch(samples: &[Sample], basis: &Basis) -> [DMatrix<f32>; COMPONENTS] {
         basis.features(samples).map(|features| features.resize_horizontally(BATCH, 0.0))
     }
 
-    /// What is trained by parity class, whitened, is what the solver makes of the weights.
+    /// What is trained by parity component, whitened, is what the solver makes of the weights.
     #[test]
     fn the_learner_is_the_network() {
         let (samples, basis, mut learner) = beginner(7);
@@ -374,7 +374,7 @@ mod tests {
             let mut loss = |by: f32| {
                 let weight = |learner: &mut Learner| match layer {
                     4 => learner.output.weights[at] += by,
-                    class => learner.hidden[class].weights[at] += by,
+                    component => learner.hidden[component].weights[at] += by,
                 };
                 weight(&mut learner);
                 let errors = learner.correct(&batch) - &wanted;

@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 use crate::design::Design;
 use crate::kernel::{self, Kernel};
 pub use crate::names::{MatrixName, UnknownMatrix};
-use crate::parity::{FoldedMatrix, Quads};
+use crate::parity::{FoldedMatrix, Orbits};
 use crate::sensor::Sensor;
 use factor::{Factors, Spectrum};
 
@@ -116,15 +116,15 @@ impl Matrices {
             depth_mm: sensor.depth_mm,
             pitch_mm: sensor.pitch_mm,
         };
-        let quads = Quads::new(sensor.columns, sensor.rows);
+        let orbits = Orbits::new(sensor.columns, sensor.rows);
         let mut c = kernel::folded(sensor, kernel);
-        let spectrum = Spectrum::new(&quads, &c[2]);
+        let spectrum = Spectrum::new(&orbits, &c[2]);
         let share = factor * spectrum.largest();
         if factor > 0.0 {
-            let diagonal = FoldedMatrix::from_fn(0, &quads, |row, column| if row == column { share } else { 0.0 });
+            let diagonal = FoldedMatrix::from_fn(0, &orbits, |row, column| if row == column { share } else { 0.0 });
             c[2].blocks.iter_mut().zip(&diagonal.blocks).for_each(|(block, diagonal)| *block += diagonal);
         }
-        let factors = Factors::new(&quads, &c);
+        let factors = Factors::new(&orbits, &c);
         let condition_c33 = spectrum.condition(share);
         let condition_a = factors.condition_a();
         let condition_aat = condition_a * condition_a;
@@ -134,7 +134,7 @@ impl Matrices {
         if is_singular(condition_aat) {
             return Err(singular("A A^T", condition_aat));
         }
-        let [c33inv, a1, a2, a3] = factors.inverses(&quads).ok_or_else(|| singular("A A^T", f64::INFINITY))?;
+        let [c33inv, a1, a2, a3] = factors.inverses(&orbits).ok_or_else(|| singular("A A^T", f64::INFINITY))?;
         let [c31, c32, c33] = c;
         Ok(Self { c31, c32, c33, c33inv, a: [a1, a2, a3], condition_c33, condition_aat, sensor: sensor.clone() })
     }
@@ -144,9 +144,9 @@ impl Matrices {
         &self.sensor
     }
 
-    /// The quads of the sensor.
-    pub fn quads(&self) -> &Quads {
-        &self.c33.quads
+    /// The orbits of the sensor.
+    pub fn orbits(&self) -> &Orbits {
+        &self.c33.orbits
     }
 
     /// One of the 13 matrices as blocks; the products D are computed here, a quarter of the work of whole matrices.

@@ -13,7 +13,7 @@ use super::scalar::put_moments;
 use super::step::Step;
 use crate::filter::FilteredMatrices;
 use crate::matrices::Matrices;
-use crate::parity::{CLASSES, Quads, butterfly};
+use crate::parity::{COMPONENTS, Orbits, butterfly};
 use crate::reduced::{ReducedMatrices, SumRows};
 use crate::sums::ByPq;
 
@@ -23,12 +23,12 @@ pub(crate) const FRAMES: usize = 128;
 /// What all batches of a list share. Vectors have `W` values an element, as those of [`super::scalar::Number`].
 #[derive(Clone, Debug)]
 pub(crate) struct Blocks<const W: usize> {
-    /// The matrices, dense, by class of the operand, as the list multiplies with them. Entries that the filter has dropped
-    /// are zeros.
+    /// The matrices, dense, by component of the operand, as the list multiplies with them. Entries that the filter has
+    /// dropped are zeros.
     matrices: Vec<[DMatrix<f64>; W]>,
     sums: Sums,
     /// The taxels of every element.
-    members: Vec<[usize; W]>,
+    images: Vec<[usize; W]>,
     taxels: usize,
 }
 
@@ -41,13 +41,13 @@ enum Sums {
     Arms(Vec<[f64; 2]>),
 }
 
-impl Blocks<CLASSES> {
+impl Blocks<COMPONENTS> {
     /// For a folded list and its matrices.
-    pub(crate) fn folded(list: &ProductList, stored: &ReducedMatrices, quads: &Quads) -> Self {
+    pub(crate) fn folded(list: &ProductList, stored: &ReducedMatrices, orbits: &Orbits) -> Self {
         let blocks = list.matrices.iter().map(|form| {
-            let Source::Ten(name) = form.source else { return [0; CLASSES].map(|_| DMatrix::zeros(0, 0)) };
+            let Source::Ten(name) = form.source else { return [0; COMPONENTS].map(|_| DMatrix::zeros(0, 0)) };
             let rows = &stored.get(name).rows;
-            let mut blocks = [rows.len(); CLASSES].map(|n| DMatrix::zeros(n, n));
+            let mut blocks = [rows.len(); COMPONENTS].map(|n| DMatrix::zeros(n, n));
             for (row, entries) in rows.iter().enumerate() {
                 for &(column, values) in entries {
                     for (block, value) in blocks.iter_mut().zip(values) {
@@ -58,7 +58,7 @@ impl Blocks<CLASSES> {
             blocks
         });
         let sums = Sums::Rows(Box::new(stored.sum_rows().clone()));
-        Self { matrices: blocks.collect(), sums, members: quads.all(), taxels: quads.taxels() }
+        Self { matrices: blocks.collect(), sums, images: orbits.all(), taxels: orbits.taxels() }
     }
 }
 
@@ -80,8 +80,8 @@ impl Blocks<1> {
         });
         let sensor = matrices.sensor();
         let arms = (0..sensor.taxels()).map(|taxel| sensor.arm_m(taxel)).collect();
-        let members = (0..sensor.taxels()).map(|taxel| [taxel]).collect();
-        Self { matrices: blocks.collect(), sums: Sums::Arms(arms), members, taxels: sensor.taxels() }
+        let images = (0..sensor.taxels()).map(|taxel| [taxel]).collect();
+        Self { matrices: blocks.collect(), sums: Sums::Arms(arms), images, taxels: sensor.taxels() }
     }
 }
 
@@ -100,7 +100,7 @@ pub(crate) struct Batch<const W: usize> {
     pub(crate) friction: Vec<[f64; 2]>,
 }
 
-/// By class: the values of one frame after the other.
+/// By component: the values of one frame after the other.
 #[derive(Clone, Debug)]
 pub(crate) struct Columns<const W: usize>(pub(crate) [Vec<f64>; W]);
 
@@ -111,7 +111,7 @@ impl<const W: usize> Default for Columns<W> {
 }
 
 impl<const W: usize> Batch<W> {
-    /// What each class of a folded vector has of a taxel.
+    /// What each component of a folded vector has of a taxel.
     const SHARE: f64 = 1.0 / W as f64;
 
     /// Of no frames yet.
@@ -125,30 +125,30 @@ impl<const W: usize> Batch<W> {
     }
 
     fn elements(&self) -> usize {
-        self.blocks.members.len()
+        self.blocks.images.len()
     }
 
     fn frames(&self) -> usize {
         self.friction.len()
     }
 
-    /// One frame's values of a vector, by class.
+    /// One frame's values of a vector, by component.
     fn column<'v>(&self, vector: &'v Columns<W>, frame: usize) -> [&'v [f64]; W] {
         let n = self.elements();
-        vector.0.each_ref().map(|class| &class[frame * n..][..n])
+        vector.0.each_ref().map(|component| &component[frame * n..][..n])
     }
 
     /// The same, to be changed.
     fn column_mut<'v>(&self, vector: &'v mut Columns<W>, frame: usize) -> [&'v mut [f64]; W] {
         let n = self.elements();
-        vector.0.each_mut().map(|class| &mut class[frame * n..][..n])
+        vector.0.each_mut().map(|component| &mut component[frame * n..][..n])
     }
 
-    /// Calls `each` for every frame and quad with the number of the value in each class.
+    /// Calls `each` for every frame and orbit with the number of the value in each component.
     fn for_each(&self, mut each: impl FnMut(usize, usize, &[usize; W])) {
         for frame in 0..self.frames() {
-            for (quad, taxels) in self.blocks.members.iter().enumerate() {
-                each(frame * self.elements() + quad, frame * self.blocks.taxels, taxels);
+            for (orbit, taxels) in self.blocks.images.iter().enumerate() {
+                each(frame * self.elements() + orbit, frame * self.blocks.taxels, taxels);
             }
         }
     }
@@ -180,15 +180,15 @@ impl<const W: usize> Arithmetic for Batch<W> {
     fn load(&self, stress: &Vec<f64>, operand: &mut Columns<W>) {
         self.for_each(|at, first, taxels| {
             let sums = butterfly(taxels.map(|taxel| stress[first + taxel]));
-            operand.0.iter_mut().zip(sums).for_each(|(class, sum)| class[at] = sum);
+            operand.0.iter_mut().zip(sums).for_each(|(component, sum)| component[at] = sum);
         });
     }
 
     fn multiply(&self, _: usize, step: &Step, operand: &Columns<W>, result: &mut Columns<W>, (): &mut ()) {
         let n = self.elements();
-        for (class, block) in self.blocks.matrices[step.matrix].iter().enumerate() {
-            let operand = DMatrixView::from_slice(&operand.0[class], n, self.frames());
-            let mut result = DMatrixViewMut::from_slice(&mut result.0[class ^ step.parity], n, self.frames());
+        for (component, block) in self.blocks.matrices[step.matrix].iter().enumerate() {
+            let operand = DMatrixView::from_slice(&operand.0[component], n, self.frames());
+            let mut result = DMatrixViewMut::from_slice(&mut result.0[component ^ step.parity], n, self.frames());
             result.gemm(1.0, block, &operand, 0.0);
         }
     }
@@ -196,8 +196,8 @@ impl<const W: usize> Arithmetic for Batch<W> {
     fn combine(&self, _: usize, [a, b, c]: [&Columns<W>; 3], (): (), result: &mut Columns<W>) {
         for (frame, [mu_x, mu_y]) in self.friction.iter().enumerate() {
             let parts = [a, b, c].map(|part| self.column(part, frame));
-            for (class, result) in self.column_mut(result, frame).into_iter().enumerate() {
-                let [a, b, c] = parts.map(|part| part[class]);
+            for (component, result) in self.column_mut(result, frame).into_iter().enumerate() {
+                let [a, b, c] = parts.map(|part| part[component]);
                 for (result, ((a, b), c)) in result.iter_mut().zip(a.iter().zip(b).zip(c)) {
                     *result = a + mu_x * b + mu_y * c;
                 }
@@ -207,14 +207,14 @@ impl<const W: usize> Arithmetic for Batch<W> {
 
     fn part(&self, y: &mut Columns<W>, pull: &mut Columns<W>, weight: &mut Vec<f64>) {
         self.for_each(|at, first, taxels| {
-            let values = butterfly(y.0.each_ref().map(|class| class[at])).map(|sum| Self::SHARE * sum);
+            let values = butterfly(y.0.each_ref().map(|component| component[at])).map(|sum| Self::SHARE * sum);
             let magnitudes = values.map(|value| (-value).max(0.0));
             for (taxel, magnitude) in taxels.iter().zip(magnitudes) {
                 weight[first + taxel] = magnitude;
             }
-            y.0.iter_mut().zip(butterfly(magnitudes)).for_each(|(class, sum)| class[at] = sum);
+            y.0.iter_mut().zip(butterfly(magnitudes)).for_each(|(component, sum)| component[at] = sum);
             let pulls = butterfly(values.map(|value| value.max(0.0)));
-            pull.0.iter_mut().zip(pulls).for_each(|(class, sum)| class[at] = sum);
+            pull.0.iter_mut().zip(pulls).for_each(|(component, sum)| component[at] = sum);
         });
     }
 
@@ -232,7 +232,7 @@ impl<const W: usize> Arithmetic for Batch<W> {
 
     fn unfold(&self, vector: &Columns<W>, values: &mut Vec<f64>) {
         self.for_each(|at, first, taxels| {
-            for (taxel, sum) in taxels.iter().zip(butterfly(vector.0.each_ref().map(|class| class[at]))) {
+            for (taxel, sum) in taxels.iter().zip(butterfly(vector.0.each_ref().map(|component| component[at]))) {
                 values[first + taxel] = Self::SHARE * sum;
             }
         });
@@ -242,7 +242,7 @@ impl<const W: usize> Arithmetic for Batch<W> {
         let Sums::Rows(rows) = &self.blocks.sums else { return };
         for (frame, sums) in sums[..self.frames()].iter_mut().enumerate() {
             let [pull, weight] = [pull, weight].map(|vector| self.column(vector, frame));
-            *sums = rows.of(|quad, class| pull[class][quad], |quad, class| weight[class][quad]);
+            *sums = rows.of(|orbit, component| pull[component][orbit], |orbit, component| weight[component][orbit]);
         }
     }
 

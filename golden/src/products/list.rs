@@ -41,7 +41,7 @@ impl Form {
         if self.with_identity { format!("{sign}(I + {name})") } else { format!("{sign}{name}") }
     }
 
-    /// What it does to the class of a vector, see [`crate::parity::FoldedMatrix`].
+    /// Its mirror symmetry, see [`crate::parity::FoldedMatrix`].
     pub fn parity(&self) -> usize {
         match self.source {
             Source::Thirteen(name) => name.parity(),
@@ -145,8 +145,8 @@ impl ProductList {
         list
     }
 
-    /// The parity fold: vectors by quad and class, matrices of a quarter of the size, see [`crate::parity`]. For a list
-    /// with forces and sums of its own, as fewer products have them.
+    /// The parity fold: vectors by orbit and component, matrices of a quarter of the size, see [`crate::parity`]. For a
+    /// list with forces and sums of its own, as fewer products have them.
     #[must_use]
     pub fn folded(mut self) -> Self {
         for step in &mut self.steps {
@@ -155,8 +155,8 @@ impl ProductList {
         self
     }
 
-    /// The diagonal mirror, for a folded list of a sensor that is square in sides and pitch, of `side` by `side` quads:
-    /// K2, C32 and A2 are K1, C31 and A1 mirrored, and only those are stored.
+    /// The diagonal mirror, for a folded list of a sensor that is square in sides and pitch, of `side` by `side`
+    /// orbits: K2, C32 and A2 are K1, C31 and A1 mirrored, and only those are stored.
     #[must_use]
     pub fn mirrored(self, side: usize) -> Self {
         let mut list = Self::default();

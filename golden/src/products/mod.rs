@@ -17,6 +17,6 @@ pub use crate::sums::{ByPq, RESULTANTS};
 pub use interpreter::{Arithmetic, Frame};
 pub use list::{Form, ProductList, Source};
 pub use real::{Engine, Real, RealFrame};
-pub use scalar::{Number, Scalar, mirror, put_moments, swapped};
+pub use scalar::{Number, Scalar, put_moments};
 pub use step::{Coefficients, Epilogue, Step, Vector};
 pub use stored::{PaperMatrices, Stored};

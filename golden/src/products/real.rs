@@ -86,10 +86,10 @@ pub struct Engine<T, S, const W: usize> {
 
 impl<T: Float, S: Stored<W>, const W: usize> Engine<T, S, W> {
     /// For a list, its matrices, and elements that stand for these of `taxels` taxels.
-    pub fn new(list: ProductList, stored: S, members: Vec<[usize; W]>, taxels: usize) -> Self {
+    pub fn new(list: ProductList, stored: S, images: Vec<[usize; W]>, taxels: usize) -> Self {
         let before_friction = list.before_friction();
         let numbers = Real { stored, list: list.clone(), number: PhantomData };
-        Self { list, arithmetic: Scalar::new(numbers, members, taxels), before_friction }
+        Self { list, arithmetic: Scalar::new(numbers, images, taxels), before_friction }
     }
 
     /// The matrices.

@@ -4,11 +4,11 @@ use std::ops::{Add, Neg, Sub};
 
 use super::interpreter::Arithmetic;
 use super::step::Step;
-use crate::parity::butterfly;
+use crate::parity::{butterfly, mirror, swapped};
 use crate::sums::ByPq;
 
 /// A kind of numbers, and the products in it. Vectors have `W` values an element: one for each taxel, or four for each
-/// quad, by class.
+/// orbit, by component.
 pub trait Number<const W: usize> {
     /// One number.
     type Element: Copy
@@ -41,7 +41,7 @@ pub trait Number<const W: usize> {
     fn folded_stress(&self, sum: Self::Element) -> Self::Element;
     /// Folded weights, or y+, in the format of an operand.
     fn folded_weight(&self, sum: Self::Element) -> Self::Element;
-    /// The value of a taxel from the sum over the classes, W times as much.
+    /// The value of a taxel from the sum over the components, W times as much.
     fn unfolded(&self, sum: Self::Element) -> Self::Element;
     /// Folded stress in the format of a result.
     fn added_stress(&self, index: usize, stress: Self::Element) -> Self::Element;
@@ -52,15 +52,15 @@ pub trait Number<const W: usize> {
 pub struct Scalar<N, const W: usize> {
     /// The numbers.
     pub numbers: N,
-    /// The taxels of each element, see [`crate::parity::Quads::members`].
-    members: Vec<[usize; W]>,
+    /// The taxels of each element, see [`crate::parity::Orbits::images`].
+    images: Vec<[usize; W]>,
     taxels: usize,
 }
 
 impl<N, const W: usize> Scalar<N, W> {
     /// For elements that stand for these of `taxels` taxels.
-    pub fn new(numbers: N, members: Vec<[usize; W]>, taxels: usize) -> Self {
-        Self { numbers, members, taxels }
+    pub fn new(numbers: N, images: Vec<[usize; W]>, taxels: usize) -> Self {
+        Self { numbers, images, taxels }
     }
 }
 
@@ -72,7 +72,7 @@ impl<N: Number<W>, const W: usize> Arithmetic for Scalar<N, W> {
     type Scratch = N::Scratch;
 
     fn vector(&self) -> Self::Vector {
-        vec![[N::Element::default(); W]; self.members.len()]
+        vec![[N::Element::default(); W]; self.images.len()]
     }
 
     fn taxels(&self) -> Self::Taxels {
@@ -88,7 +88,7 @@ impl<N: Number<W>, const W: usize> Arithmetic for Scalar<N, W> {
     }
 
     fn load(&self, stress: &Self::Taxels, operand: &mut Self::Vector) {
-        for (element, taxels) in operand.iter_mut().zip(&self.members) {
+        for (element, taxels) in operand.iter_mut().zip(&self.images) {
             *element = butterfly(taxels.map(|taxel| stress[taxel])).map(|sum| self.numbers.folded_stress(sum));
         }
     }
@@ -127,7 +127,7 @@ impl<N: Number<W>, const W: usize> Arithmetic for Scalar<N, W> {
 
     fn part(&self, y: &mut Self::Vector, pull: &mut Self::Vector, weight: &mut Self::Taxels) {
         let folded = |values: [N::Element; W]| butterfly(values).map(|sum| self.numbers.folded_weight(sum));
-        for ((y, pull), taxels) in y.iter_mut().zip(pull).zip(&self.members) {
+        for ((y, pull), taxels) in y.iter_mut().zip(pull).zip(&self.images) {
             let values = butterfly(*y).map(|sum| self.numbers.unfolded(sum));
             let magnitude = values.map(|value| positive(-value));
             for (&taxel, magnitude) in taxels.iter().zip(magnitude) {
@@ -150,7 +150,7 @@ impl<N: Number<W>, const W: usize> Arithmetic for Scalar<N, W> {
     }
 
     fn unfold(&self, vector: &Self::Vector, values: &mut Self::Taxels) {
-        for (element, taxels) in vector.iter().zip(&self.members) {
+        for (element, taxels) in vector.iter().zip(&self.images) {
             for (&taxel, sum) in taxels.iter().zip(butterfly(*element)) {
                 values[taxel] = self.numbers.unfolded(sum);
             }
@@ -185,21 +185,11 @@ fn positive<E: Copy + Default + PartialOrd>(value: E) -> E {
     if value > E::default() { value } else { E::default() }
 }
 
-/// A folded vector on the other side of the diagonal, on a square grid of `side` by `side` quads.
+/// A folded vector on the other side of the diagonal, on a square grid of `side` by `side` orbits.
 fn mirrored<E: Copy, const W: usize>(vector: &[[E; W]], side: usize) -> Vec<[E; W]> {
-    let element = |quad| {
-        let image: [E; W] = vector[mirror(quad, side)];
-        std::array::from_fn(|class| image[swapped(class)])
+    let element = |orbit| {
+        let mirrored: [E; W] = vector[mirror(orbit, side)];
+        std::array::from_fn(|component| mirrored[swapped(component)])
     };
     (0..vector.len()).map(element).collect()
-}
-
-/// The quad on the other side of the diagonal, on a square grid of `side` by `side` quads.
-pub fn mirror(quad: usize, side: usize) -> usize {
-    quad % side * side + quad / side
-}
-
-/// The class that `class` is on the other side of the diagonal.
-pub fn swapped(class: usize) -> usize {
-    (class & 1) << 1 | class >> 1
 }

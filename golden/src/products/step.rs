@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// A vector that products read or write: a value for each taxel, or, in a folded list, for each quad and parity class.
+/// A vector that products read or write: a value for each taxel, or in a folded list for each orbit and component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum Vector {
     /// Measured normal stress `b_z`, in Pa.
@@ -106,11 +106,10 @@ pub struct Step {
     pub coefficients: Coefficients,
     /// Whether the sums `G_pq` of the frame come with it, from rows of their own.
     pub sums: bool,
-    /// What the stored matrix does to the class of its operand, see [`crate::parity::FoldedMatrix`]; 0 in a list that is
-    /// not folded.
+    /// Mirror symmetry of the stored matrix, see [`crate::parity::FoldedMatrix`]; 0 in a list that is not folded.
     pub parity: usize,
     /// The diagonal mirror of the stored matrix is meant: operand and result are mirrored instead. Holds the number of
-    /// quads along a side.
+    /// orbits along a side.
     pub mirrored: Option<usize>,
     /// What happens to each result.
     pub epilogue: Epilogue,

@@ -6,13 +6,13 @@ use super::list::Source;
 use crate::filter::FilteredMatrices;
 use crate::float::Float;
 use crate::matrices::Matrices;
-use crate::parity::{CLASSES, butterfly};
+use crate::parity::{COMPONENTS, butterfly};
 use crate::reduced::{FoldedRows, ReducedMatrices, SumRows};
 use crate::sums::ByPq;
 
 /// The matrices that the products of a list are with, for vectors of `W` values an element.
 pub trait Stored<const W: usize> {
-    /// The product with the matrix that `source` names. `scratch` has two vectors of four values a quad.
+    /// The product with the matrix that `source` names. `scratch` has two vectors of four values an orbit.
     fn times<T: Float>(&self, source: Source, x: &[[T; W]], result: &mut [[T; W]], scratch: &mut Quarters<T>);
 
     /// The sums `G_pq` from y+ and the weights.
@@ -37,7 +37,7 @@ impl<S: Stored<W>, const W: usize> Stored<W> for &S {
 }
 
 /// Two folded vectors.
-pub type Quarters<T> = [Vec<[T; CLASSES]>; 2];
+pub type Quarters<T> = [Vec<[T; COMPONENTS]>; 2];
 
 impl Stored<4> for ReducedMatrices {
     fn times<T: Float>(&self, source: Source, x: &[[T; 4]], result: &mut [[T; 4]], _: &mut Quarters<T>) {
@@ -47,7 +47,7 @@ impl Stored<4> for ReducedMatrices {
     }
 
     fn sums<T: Float>(&self, pull: &[[T; 4]], weight: &[[T; 4]]) -> ByPq<T> {
-        self.sum_rows().of(|quad, class| pull[quad][class], |quad, class| weight[quad][class])
+        self.sum_rows().of(|orbit, component| pull[orbit][component], |orbit, component| weight[orbit][component])
     }
 
     /// Rows of sums have the arms in them.
@@ -57,19 +57,19 @@ impl Stored<4> for ReducedMatrices {
 }
 
 impl SumRows {
-    /// The sums `G_pq` from what y+ and the weights have at a quad in a class.
+    /// The sums `G_pq` from what y+ and the weights have at an orbit in a component.
     pub(super) fn of<T: Float>(&self, pull: impl Fn(usize, usize) -> T, weight: impl Fn(usize, usize) -> T) -> ByPq<T> {
         let mut sums = ByPq::<T>::default();
-        for quad in 0..self.shares[0].weights.len() {
+        for orbit in 0..self.shares[0].weights.len() {
             for (p, sums) in sums.iter_mut().enumerate() {
                 for (q, sum) in sums.iter_mut().enumerate() {
                     let row = &self.rows[p][q];
-                    let value = if q == 0 { pull(quad, row.class) } else { weight(quad, row.class) };
-                    *sum = *sum + T::of(row.weights[quad]) * value;
+                    let value = if q == 0 { pull(orbit, row.component) } else { weight(orbit, row.component) };
+                    *sum = *sum + T::of(row.weights[orbit]) * value;
                 }
             }
             for (sums, share) in sums[2..].iter_mut().zip(&self.shares) {
-                sums[0] = sums[0] - T::of(share.weights[quad]) * weight(quad, share.class);
+                sums[0] = sums[0] - T::of(share.weights[orbit]) * weight(orbit, share.component);
             }
         }
         sums
@@ -82,7 +82,7 @@ pub struct PaperMatrices {
     /// The thirteen.
     pub filtered: FilteredMatrices,
     c33: FoldedRows,
-    members: Vec<[usize; 4]>,
+    images: Vec<[usize; 4]>,
     arms_m: Vec<[f64; 2]>,
 }
 
@@ -93,7 +93,7 @@ impl PaperMatrices {
         Self {
             filtered,
             c33: FoldedRows::from(&matrices.c33),
-            members: matrices.quads().all(),
+            images: matrices.orbits().all(),
             arms_m: (0..sensor.taxels()).map(|taxel| sensor.arm_m(taxel)).collect(),
         }
     }
@@ -107,10 +107,10 @@ impl Stored<1> for PaperMatrices {
         }
         let [folded, product] = scratch;
         folded.clear();
-        folded.extend(self.members.iter().map(|taxels| butterfly(taxels.map(|taxel| x[taxel]))));
+        folded.extend(self.images.iter().map(|taxels| butterfly(taxels.map(|taxel| x[taxel]))));
         product.resize(folded.len(), Default::default());
         self.c33.times(folded, product);
-        for (taxels, product) in self.members.iter().zip(product) {
+        for (taxels, product) in self.images.iter().zip(product) {
             for (&taxel, sum) in taxels.iter().zip(butterfly(*product)) {
                 result[taxel] = T::of(0.25) * sum;
             }

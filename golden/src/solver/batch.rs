@@ -7,7 +7,7 @@ use crate::estimators::{Contact, FrictionScratch, Seen};
 use crate::filter::FilteredMatrices;
 use crate::matrices::MatrixName;
 use crate::names::ReducedName;
-use crate::parity::{CLASSES, Quads};
+use crate::parity::{COMPONENTS, Orbits};
 use crate::products::batch::{Batch, Blocks};
 use crate::products::{Frame, ProductList, Vector};
 use crate::reduced::ReducedMatrices;
@@ -19,9 +19,9 @@ fn pays(kept: usize, all: usize) -> bool {
 }
 
 /// Whether it pays in the reduced plan.
-pub(super) fn pays_folded(matrices: &ReducedMatrices, quads: &Quads) -> bool {
+pub(super) fn pays_folded(matrices: &ReducedMatrices, orbits: &Orbits) -> bool {
     let kept = ReducedName::ALL.into_iter().map(|name| matrices.nnz(name)).sum();
-    pays(kept, ReducedName::ALL.len() * CLASSES * quads.count() * quads.count())
+    pays(kept, ReducedName::ALL.len() * COMPONENTS * orbits.count() * orbits.count())
 }
 
 /// Whether it pays in the paper's plan.

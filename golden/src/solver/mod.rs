@@ -27,7 +27,7 @@ use crate::estimators::standard_error::Confidence;
 use crate::estimators::{Answer, Friction, FrictionScratch, Seen};
 use crate::filter::{FilterError, FilteredMatrices};
 use crate::matrices::{Matrices, MatrixError};
-use crate::parity::CLASSES;
+use crate::parity::COMPONENTS;
 use crate::products::batch::Blocks;
 use crate::products::{Engine, PaperMatrices, ProductList};
 use crate::reduced::ReducedMatrices;
@@ -207,8 +207,8 @@ struct Paper {
 /// Those of the reduced plan, likewise.
 #[derive(Clone, Debug)]
 struct Reduced {
-    engine: Engine<f64, ReducedMatrices, CLASSES>,
-    blocks: OnceLock<Arc<Blocks<CLASSES>>>,
+    engine: Engine<f64, ReducedMatrices, COMPONENTS>,
+    blocks: OnceLock<Arc<Blocks<COMPONENTS>>>,
 }
 
 impl Solver {
@@ -226,11 +226,11 @@ impl Solver {
             PlanKind::Paper => {
                 FilteredMatrices::new(&matrices, filter).map(|filtered| Self::from_parts(design, matrices, filtered))
             }
-            PlanKind::Reduced => ReducedMatrices::new(&matrices, matrices.quads(), filter).map(|reduced| {
+            PlanKind::Reduced => ReducedMatrices::new(&matrices, matrices.orbits(), filter).map(|reduced| {
                 let field = design.algorithm.outputs == Outputs::Field || design.algorithm.contacts > 1;
                 let list = ProductList::paper().fewer_products(field).folded();
-                let quads = *matrices.quads();
-                let engine = Engine::new(list, reduced, quads.all(), quads.taxels());
+                let orbits = *matrices.orbits();
+                let engine = Engine::new(list, reduced, orbits.all(), orbits.taxels());
                 Self::with(design, matrices, Products::Reduced(Box::new(Reduced { engine, blocks: OnceLock::new() })))
             }),
         }
@@ -239,10 +239,10 @@ impl Solver {
 
     /// A solver by the paper's plan from matrices already computed for the same design, whatever plan that names.
     pub fn from_parts(design: &Design, matrices: Matrices, filtered: FilteredMatrices) -> Self {
-        let taxels = matrices.quads().taxels();
+        let taxels = matrices.orbits().taxels();
         let stored = PaperMatrices::new(&matrices, filtered);
-        let members = (0..taxels).map(|taxel| [taxel]).collect();
-        let engine = Engine::new(ProductList::paper(), stored, members, taxels);
+        let images = (0..taxels).map(|taxel| [taxel]).collect();
+        let engine = Engine::new(ProductList::paper(), stored, images, taxels);
         Self::with(design, matrices, Products::Paper(Box::new(Paper { engine, blocks: OnceLock::new() })))
     }
 

@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::{Solution, Solver, Status, Workspace, quotient};
 use crate::contacts::{ContactForces, Found};
 use crate::matrices::{Matrices, MatrixName};
-use crate::parity::CLASSES;
+use crate::parity::COMPONENTS;
 
 /// Rounds of separation: by the forces of the frame as one contact, then by the forces of the separated contacts. More rounds
 /// change next to nothing.
@@ -36,7 +36,7 @@ pub(super) struct Separation {
     /// The part of the frame that no forces explain.
     unexplained: DVector<f64>,
     /// A folded vector, and a folded product.
-    folded: [[Vec<f64>; CLASSES]; 2],
+    folded: [[Vec<f64>; COMPONENTS]; 2],
     /// The solution of one contact.
     alone: Option<Box<Solution>>,
 }
@@ -158,20 +158,20 @@ impl Solver {
     fn find_frames(&self, separation: &mut Separation, whole: &DVector<f64>) {
         let Separation { found, forces, frames, unexplained, folded: [folded, product], .. } = separation;
         let Matrices { c31, c32, c33, .. } = &self.matrices;
-        let quads = self.matrices.quads();
+        let orbits = self.matrices.orbits();
         frames.resize_with(found.taxels.len(), || whole.clone());
         unexplained.clone_from(whole);
         for (contact, frame) in frames.iter_mut().enumerate() {
-            for class in &mut *product {
-                class.clear();
-                class.resize(quads.count(), 0.0);
+            for component in &mut *product {
+                component.clear();
+                component.resize(orbits.count(), 0.0);
             }
             for (matrix, forces) in [c31, c32, c33].into_iter().zip(&*forces) {
                 let own = |taxel: usize| if found.regions[taxel] == Some(contact) { forces[taxel] } else { 0.0 };
-                quads.fold_into(folded, own);
+                orbits.fold_into(folded, own);
                 matrix.add_to(product, folded);
             }
-            quads.unfold_into(product, frame.as_mut_slice());
+            orbits.unfold_into(product, frame.as_mut_slice());
             *unexplained -= &*frame;
         }
         // Without a filter, which makes forces inexact, this is rounding.

@@ -9,7 +9,7 @@ use super::reading::{Given, Past, Reading};
 use super::separate::{Counted, Separation};
 use super::{Estimate, Paper, Products, Reduced, Slips, Solution, Solver, SolverError, Status};
 use crate::estimators::{Contact, FrictionScratch, Seen};
-use crate::parity::{CLASSES, Quads};
+use crate::parity::{COMPONENTS, Orbits};
 use crate::products::batch::{Blocks, FRAMES};
 use crate::products::{Engine, PaperMatrices, ProductList, RealFrame, Stored};
 use crate::reduced::ReducedMatrices;
@@ -17,7 +17,7 @@ use crate::reduced::ReducedMatrices;
 /// Memory for solving frames with one solver; see [`Solver::workspace`].
 #[derive(Clone, Debug)]
 pub struct Workspace {
-    quads: Quads,
+    orbits: Orbits,
     /// Forces along each axis that a frame is solved for.
     forces: usize,
     pub(super) b: DVector<f64>,
@@ -52,20 +52,20 @@ impl Decoded {
 #[derive(Clone, Debug, Default)]
 struct Batches {
     paper: Option<Box<BatchFrame<1>>>,
-    reduced: Option<Box<BatchFrame<CLASSES>>>,
+    reduced: Option<Box<BatchFrame<COMPONENTS>>>,
 }
 
 #[derive(Clone, Debug)]
 enum Scratch {
     Paper(Box<RealFrame<f64, PaperMatrices, 1>>),
-    Reduced(Box<RealFrame<f64, ReducedMatrices, CLASSES>>),
+    Reduced(Box<RealFrame<f64, ReducedMatrices, COMPONENTS>>),
 }
 
 impl Solver {
     /// Memory for [`Solver::solve_into`] and [`Solver::solve_batch`]; each thread needs its own.
     pub fn workspace(&self) -> Workspace {
         Workspace {
-            quads: *self.matrices.quads(),
+            orbits: *self.matrices.orbits(),
             forces: self.solved_length(),
             b: DVector::zeros(self.taxels()),
             friction: FrictionScratch::default(),
@@ -216,9 +216,9 @@ impl Solver {
     ) -> Result<(), SolverError> {
         self.fit(workspace);
         solutions.resize_with(frames.len(), || Solution::zeros(Status::default(), 0));
-        let quads = self.matrices.quads();
+        let orbits = self.matrices.orbits();
         match &self.products {
-            Products::Paper(paper) if batch::pays_whole(&paper.engine.stored().filtered, quads.taxels()) => {
+            Products::Paper(paper) if batch::pays_whole(&paper.engine.stored().filtered, orbits.taxels()) => {
                 let Paper { engine, blocks } = &**paper;
                 let whole = || Arc::new(Blocks::whole(&engine.list, &engine.stored().filtered, &self.matrices));
                 let blocks = blocks.get_or_init(whole);
@@ -227,9 +227,9 @@ impl Solver {
                 workspace.batches.paper = Some(batch);
                 result
             }
-            Products::Reduced(reduced) if batch::pays_folded(reduced.engine.stored(), quads) => {
+            Products::Reduced(reduced) if batch::pays_folded(reduced.engine.stored(), orbits) => {
                 let Reduced { engine, blocks } = &**reduced;
-                let blocks = blocks.get_or_init(|| Arc::new(Blocks::folded(&engine.list, engine.stored(), quads)));
+                let blocks = blocks.get_or_init(|| Arc::new(Blocks::folded(&engine.list, engine.stored(), orbits)));
                 let mut batch = made(workspace.batches.reduced.take(), &engine.list, blocks);
                 let result = self.solve_together(workspace, &mut batch, frames, solutions);
                 workspace.batches.reduced = Some(batch);
@@ -286,8 +286,8 @@ impl Solver {
             (&self.products, &workspace.products),
             (Products::Paper(_), Scratch::Paper(_)) | (Products::Reduced(_), Scratch::Reduced(_))
         );
-        let quads = self.matrices.quads();
-        if !same_plan || workspace.quads != *quads || workspace.forces != self.solved_length() {
+        let orbits = self.matrices.orbits();
+        if !same_plan || workspace.orbits != *orbits || workspace.forces != self.solved_length() {
             *workspace = self.workspace();
         }
     }

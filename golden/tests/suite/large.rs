@@ -15,8 +15,8 @@ fn check(columns: usize, rows: usize) {
     );
     let design = Design::from_toml(&text, "mat.toml").unwrap();
     let matrices = Matrices::new(&design.sensor, Kernel::Point).unwrap();
-    let reduced = ReducedMatrices::new(&matrices, matrices.quads(), &Filter::None).unwrap();
-    let n = matrices.quads().count();
+    let reduced = ReducedMatrices::new(&matrices, matrices.orbits(), &Filter::None).unwrap();
+    let n = matrices.orbits().count();
     assert!(ReducedName::ALL.into_iter().all(|name| reduced.nnz(name) == 4 * n * n));
     let counts = MatrixName::ALL.map(|name| nnz_of(&matrices, name, MatrixFilter::F2 { p: 30.0 }));
     let m = columns * rows;

@@ -70,7 +70,7 @@ fn the_kernels_matrices_survive_folding() {
             let folded = kernel::folded(&sensor, kind);
             for (folded, whole) in folded.iter().zip(kernel::matrices(&sensor, kind)) {
                 assert_close(&folded.dense(), &whole, 1e-15 * whole.amax(), "folded and unfolded");
-                assert_eq!(*folded, FoldedMatrix::new(&whole, folded.parity, &folded.quads));
+                assert_eq!(*folded, FoldedMatrix::new(&whole, folded.parity, &folded.orbits));
             }
         }
     }
@@ -103,7 +103,7 @@ fn a_filter_that_leaves_nothing_is_refused() {
 }
 
 fn blocks(matrices: &Matrices) -> DMatrix<f64> {
-    let m = matrices.quads().taxels();
+    let m = matrices.orbits().taxels();
     let mut a = DMatrix::zeros(m, 3 * m);
     for (block, c) in [&matrices.c31, &matrices.c32, &matrices.c33].into_iter().enumerate() {
         a.columns_mut(block * m, m).copy_from(&c.dense());

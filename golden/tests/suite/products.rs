@@ -4,7 +4,7 @@ use golden::float::Float;
 use golden::kernel::{self, Kernel};
 use golden::matrices::Matrices;
 use golden::names::{MatrixName, ReducedName};
-use golden::parity::{CLASSES, FoldedMatrix, Quads};
+use golden::parity::{COMPONENTS, FoldedMatrix, Orbits};
 use golden::products::{ByPq, Engine, ProductList, Source, Stored, Vector};
 use golden::sensor::Sensor;
 use nalgebra::DMatrix;
@@ -13,7 +13,7 @@ use nalgebra::DMatrix;
 #[derive(Clone)]
 struct Dense {
     sensor: Sensor,
-    quads: Quads,
+    orbits: Orbits,
     thirteen: Vec<DMatrix<f64>>,
     ten: Vec<DMatrix<f64>>,
 }
@@ -26,7 +26,7 @@ impl Dense {
         let [c33inv, a1, a2, a3] = [0, 1, 2, 3].map(|index: usize| thirteen[index].clone());
         let e = &c33 * &a3;
         let ten = vec![c33inv, &c33 - &e * &c33, &e * &c31, &e * &c32, c33, c31, c32, a1, a2, a3];
-        Self { sensor: sensor.clone(), quads: *matrices.quads(), thirteen, ten }
+        Self { sensor: sensor.clone(), orbits: *matrices.orbits(), thirteen, ten }
     }
 
     fn of(&self, source: Source) -> (&DMatrix<f64>, usize) {
@@ -55,7 +55,7 @@ impl Dense {
         let mut sums = ByPq::default();
         for q in 0..3 {
             let [x, y, z] = [0, 1, 2].map(|p| vector(p, q));
-            for taxel in 0..self.quads.taxels() {
+            for taxel in 0..self.orbits.taxels() {
                 let force = [x[taxel], y[taxel], z[taxel]];
                 let torque = self.sensor.torque_of(self.sensor.position_m(taxel), force);
                 for (sum, part) in sums.iter_mut().zip(force.into_iter().chain(torque)) {
@@ -72,7 +72,7 @@ fn real<T: Float>(values: &[T]) -> Vec<f64> {
 }
 
 impl Stored<1> for Dense {
-    fn times<T: Float>(&self, source: Source, x: &[[T; 1]], result: &mut [[T; 1]], _: &mut [Vec<[T; CLASSES]>; 2]) {
+    fn times<T: Float>(&self, source: Source, x: &[[T; 1]], result: &mut [[T; 1]], _: &mut [Vec<[T; COMPONENTS]>; 2]) {
         let (matrix, _) = self.of(source);
         for (row, result) in matrix.row_iter().zip(result) {
             *result = [row.iter().zip(x).fold(T::default(), |sum, (&value, [x])| sum + T::of(value) * *x)];
@@ -89,18 +89,19 @@ impl Stored<1> for Dense {
 }
 
 impl Stored<4> for Dense {
-    fn times<T: Float>(&self, source: Source, x: &[[T; 4]], result: &mut [[T; 4]], _: &mut [Vec<[T; CLASSES]>; 2]) {
+    fn times<T: Float>(&self, source: Source, x: &[[T; 4]], result: &mut [[T; 4]], _: &mut [Vec<[T; COMPONENTS]>; 2]) {
         let (matrix, parity) = self.of(source);
-        let by_class = std::array::from_fn(|class| x.iter().map(|values| values[class].into()).collect());
-        let product = FoldedMatrix::new(matrix, parity, &self.quads).apply(&by_class);
-        for (quad, result) in result.iter_mut().enumerate() {
-            *result = std::array::from_fn(|class| T::of(product[class][quad]));
+        let by_component = std::array::from_fn(|component| x.iter().map(|values| values[component].into()).collect());
+        let product = FoldedMatrix::new(matrix, parity, &self.orbits).apply(&by_component);
+        for (orbit, result) in result.iter_mut().enumerate() {
+            *result = std::array::from_fn(|component| T::of(product[component][orbit]));
         }
     }
 
     fn sums<T: Float>(&self, pull: &[[T; 4]], weight: &[[T; 4]]) -> ByPq<T> {
         let taxels = |x: &[[T; 4]]| {
-            self.quads.unfold(&std::array::from_fn(|class| x.iter().map(|values| values[class].into()).collect()))
+            self.orbits
+                .unfold(&std::array::from_fn(|component| x.iter().map(|values| values[component].into()).collect()))
         };
         self.sums_of(&taxels(pull), &taxels(weight)).map(|sums| sums.map(T::of))
     }
@@ -122,10 +123,10 @@ const MU: [f64; 2] = [0.4, -0.3];
 fn execute<T: Float, S: Stored<W>, const W: usize>(
     list: ProductList,
     stored: S,
-    members: Vec<[usize; W]>,
+    images: Vec<[usize; W]>,
     stress: &[f64],
 ) -> Found {
-    let engine: Engine<T, S, W> = Engine::new(list, stored, members, stress.len());
+    let engine: Engine<T, S, W> = Engine::new(list, stored, images, stress.len());
     let mut frame = engine.frame();
     frame.stress = stress.iter().map(|&stress| T::of(stress)).collect();
     engine.until_friction(&mut frame);
@@ -138,8 +139,8 @@ fn by_taxel(list: ProductList, dense: &Dense, stress: &[f64]) -> Found {
     execute::<f64, _, 1>(list, dense.clone(), (0..stress.len()).map(|taxel| [taxel]).collect(), stress)
 }
 
-fn by_quad(list: ProductList, dense: &Dense, stress: &[f64]) -> Found {
-    execute::<f64, _, 4>(list, dense.clone(), dense.quads.all(), stress)
+fn by_orbit(list: ProductList, dense: &Dense, stress: &[f64]) -> Found {
+    execute::<f64, _, 4>(list, dense.clone(), dense.orbits.all(), stress)
 }
 
 fn assert_same(one: &Found, other: &Found, share: f64) {
@@ -196,7 +197,7 @@ fn without_a_field_the_search_finds_the_same() {
 fn a_folded_list_computes_the_same() {
     for (dense, stress) in cases() {
         let list = ProductList::paper().fewer_products(true);
-        let (whole, folded) = (by_taxel(list.clone(), &dense, &stress), by_quad(list.folded(), &dense, &stress));
+        let (whole, folded) = (by_taxel(list.clone(), &dense, &stress), by_orbit(list.folded(), &dense, &stress));
         assert_same(&whole, &folded, 1e-12);
     }
 }
@@ -205,10 +206,10 @@ fn a_folded_list_computes_the_same() {
 fn a_mirrored_list_computes_the_same_with_three_matrices_less() {
     let (dense, stress) = cases().swap_remove(1);
     let folded = ProductList::paper().fewer_products(true).folded();
-    let mirrored = folded.clone().mirrored(dense.quads.columns());
+    let mirrored = folded.clone().mirrored(dense.orbits.columns());
     assert_eq!((folded.matrices.len(), mirrored.matrices.len()), (11, 8));
     assert_eq!(mirrored.steps.iter().filter(|step| step.mirrored.is_some()).count(), 3);
-    assert_same(&by_quad(folded, &dense, &stress), &by_quad(mirrored, &dense, &stress), 1e-12);
+    assert_same(&by_orbit(folded, &dense, &stress), &by_orbit(mirrored, &dense, &stress), 1e-12);
 }
 
 /// In another arithmetic, but for its rounding.
@@ -216,8 +217,8 @@ fn a_mirrored_list_computes_the_same_with_three_matrices_less() {
 fn a_list_is_the_same_in_single_precision() {
     let (dense, stress) = cases().swap_remove(0);
     let list = ProductList::paper().fewer_products(true).folded();
-    let single = execute::<f32, _, 4>(list.clone(), dense.clone(), dense.quads.all(), &stress);
-    assert_same(&by_quad(list, &dense, &stress), &single, 1e-4);
+    let single = execute::<f32, _, 4>(list.clone(), dense.clone(), dense.orbits.all(), &stress);
+    assert_same(&by_orbit(list, &dense, &stress), &single, 1e-4);
 }
 
 #[test]

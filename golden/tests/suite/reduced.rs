@@ -6,7 +6,7 @@ use golden::design::{Design, Filter, Kernel, MatrixFilter, Outputs, PlanKind, Se
 use golden::filter::FilterError;
 use golden::kernel;
 use golden::matrices::{Matrices, MatrixName};
-use golden::parity::{CLASSES, FoldedMatrix, Quads, sign};
+use golden::parity::{COMPONENTS, FoldedMatrix, Orbits, sign};
 use golden::reduced::{ReducedMatrices, ReducedName};
 use golden::solver::{Solution, Solver, Status};
 use nalgebra::{DMatrix, DVector};
@@ -22,14 +22,14 @@ fn design(size: [usize; 2], pitch_mm: [f64; 2], depth_mm: f64, more: &str) -> De
 }
 
 /// The matrices of a small sensor of any parity of sides, and the dense ones of the reduced plan.
-fn small(columns: usize, rows: usize) -> (Quads, Matrices, [DMatrix<f64>; 10]) {
+fn small(columns: usize, rows: usize) -> (Orbits, Matrices, [DMatrix<f64>; 10]) {
     let sensor = Sensor { columns, rows, pitch_mm: [4.0, 3.0], depth_mm: 3.0 };
     let matrices = Matrices::new(&sensor, Kernel::Point).unwrap();
     let [a1, a2, a3] = [MatrixName::A1, MatrixName::A2, MatrixName::A3].map(|name| matrices.dense(name));
     let [c31, c32, c33] = kernel::matrices(&sensor, Kernel::Point);
     let e = &c33 * &a3;
     let dense = [matrices.dense(MatrixName::C33inv), &c33 - &e * &c33, &e * &c31, &e * &c32, c33, c31, c32, a1, a2, a3];
-    (Quads::new(columns, rows), matrices, dense)
+    (Orbits::new(columns, rows), matrices, dense)
 }
 
 /// Numbers without any symmetry.
@@ -40,49 +40,49 @@ fn uneven(count: usize) -> Vec<f64> {
 const SIDES: [[usize; 2]; 5] = [[2, 2], [6, 4], [5, 4], [4, 7], [5, 3]];
 
 #[test]
-fn every_taxel_is_in_one_quad() {
+fn every_taxel_is_in_one_orbit() {
     for [columns, rows] in SIDES {
-        let quads = Quads::new(columns, rows);
-        assert_eq!((quads.columns(), quads.rows()), (columns.div_ceil(2), rows.div_ceil(2)));
+        let orbits = Orbits::new(columns, rows);
+        assert_eq!((orbits.columns(), orbits.rows()), (columns.div_ceil(2), rows.div_ceil(2)));
         let mut seen = vec![0; columns * rows];
-        for q in 0..quads.count() {
-            let members = quads.members(q);
-            for (s, taxel) in quads.distinct(q) {
-                assert_eq!(members[s], taxel);
+        for q in 0..orbits.count() {
+            let images = orbits.images(q);
+            for (s, taxel) in orbits.distinct(q) {
+                assert_eq!(images[s], taxel);
                 seen[taxel] += 1;
             }
-            assert_eq!(quads.distinct(q).count(), quads.size(q));
+            assert_eq!(orbits.distinct(q).count(), orbits.size(q));
             // Mirrored in both directions: the same distance from the other corner.
-            assert_eq!(members[0] + members[3], columns * rows - 1);
+            assert_eq!(images[0] + images[3], columns * rows - 1);
         }
         assert_eq!(seen, vec![1; columns * rows], "{columns} x {rows}");
     }
-    assert_eq!(Quads::new(5, 3).distinct(5).collect::<Vec<_>>(), [(0, 7)], "the centre");
+    assert_eq!(Orbits::new(5, 3).distinct(5).collect::<Vec<_>>(), [(0, 7)], "the centre");
 }
 
 #[test]
-fn signs_are_those_of_the_classes() {
+fn signs_are_those_of_the_components() {
     let table = [[1, 1, 1, 1], [1, -1, 1, -1], [1, 1, -1, -1], [1, -1, -1, 1]];
-    for (class, row) in table.into_iter().enumerate() {
-        assert_eq!([0, 1, 2, 3].map(|member| sign(class, member)), row.map(f64::from));
+    for (component, row) in table.into_iter().enumerate() {
+        assert_eq!([0, 1, 2, 3].map(|image| sign(component, image)), row.map(f64::from));
     }
 }
 
 #[test]
 fn folding_is_undone() {
     for [columns, rows] in SIDES {
-        let quads = Quads::new(columns, rows);
+        let orbits = Orbits::new(columns, rows);
         let x = uneven(columns * rows);
-        let folded = quads.fold(&x);
-        for (class, folded) in folded.iter().enumerate() {
+        let folded = orbits.fold(&x);
+        for (component, folded) in folded.iter().enumerate() {
             for (q, value) in folded.iter().enumerate() {
-                let members = quads.members(q);
-                let sum: f64 = (0..4).map(|s| sign(class, s) * x[members[s]]).sum();
+                let images = orbits.images(q);
+                let sum: f64 = (0..4).map(|s| sign(component, s) * x[images[s]]).sum();
                 assert!((value - sum).abs() < 1e-14);
-                assert!(quads.exists(class, q) || *value == 0.0);
+                assert!(orbits.exists(component, q) || *value == 0.0);
             }
         }
-        for (found, expected) in quads.unfold(&folded).iter().zip(&x) {
+        for (found, expected) in orbits.unfold(&folded).iter().zip(&x) {
             assert!((found - expected).abs() < 1e-15);
         }
     }
@@ -91,33 +91,35 @@ fn folding_is_undone() {
 #[test]
 fn blocks_do_what_the_matrix_does() {
     for [columns, rows] in SIDES {
-        let (quads, matrices, dense) = small(columns, rows);
-        let reduced = ReducedMatrices::new(&matrices, &quads, &Filter::None).unwrap();
+        let (orbits, matrices, dense) = small(columns, rows);
+        let reduced = ReducedMatrices::new(&matrices, &orbits, &Filter::None).unwrap();
         let x = uneven(columns * rows);
         let whole = DVector::from_vec(x.clone());
-        let folded = quads.fold(&x);
-        let elements: Vec<[f64; 4]> = (0..quads.count()).map(|q| folded.each_ref().map(|class| class[q])).collect();
+        let folded = orbits.fold(&x);
+        let elements: Vec<[f64; 4]> =
+            (0..orbits.count()).map(|q| folded.each_ref().map(|component| component[q])).collect();
         for (name, dense) in ReducedName::ALL.into_iter().zip(&dense) {
             let product = dense * &whole;
             let tolerance = 1e-12 * product.amax();
-            let blocks = FoldedMatrix::new(dense, name.parity(), &quads);
+            let blocks = FoldedMatrix::new(dense, name.parity(), &orbits);
             let sparse = reduced.get(name);
             assert_eq!(sparse.parity, name.parity());
-            let mut by_rows = vec![[0.0; 4]; quads.count()];
+            let mut by_rows = vec![[0.0; 4]; orbits.count()];
             sparse.times(&elements, &mut by_rows);
-            let by_rows = [0, 1, 2, 3].map(|class| by_rows.iter().map(|row| row[class]).collect());
+            let by_rows = [0, 1, 2, 3].map(|component| by_rows.iter().map(|row| row[component]).collect());
             for found in [blocks.apply(&folded), by_rows] {
-                let found = quads.unfold(&found);
+                let found = orbits.unfold(&found);
                 let error = (DVector::from_vec(found) - &product).amax();
                 assert!(error < tolerance, "{name} of {columns} x {rows}: off by {error:e}");
             }
             // Without a filter everything is kept, and what cannot be is exactly zero.
-            let n = quads.count();
+            let n = orbits.count();
             assert_eq!(reduced.nnz(name), 4 * n * n);
             for (q, row) in sparse.rows.iter().enumerate() {
                 for &(column, values) in row {
-                    for (class, value) in values.into_iter().enumerate() {
-                        let exists = quads.exists(class, column as usize) && quads.exists(class ^ name.parity(), q);
+                    for (component, value) in values.into_iter().enumerate() {
+                        let exists =
+                            orbits.exists(component, column as usize) && orbits.exists(component ^ name.parity(), q);
                         assert!(exists || value == 0.0);
                     }
                 }
@@ -129,10 +131,10 @@ fn blocks_do_what_the_matrix_does() {
 #[test]
 fn sums_are_those_of_the_coefficients() {
     for [columns, rows] in SIDES {
-        let (quads, matrices, dense) = small(columns, rows);
-        let reduced = ReducedMatrices::new(&matrices, &quads, &Filter::None).unwrap();
+        let (orbits, matrices, dense) = small(columns, rows);
+        let reduced = ReducedMatrices::new(&matrices, &orbits, &Filter::None).unwrap();
         let x = DVector::from_vec(uneven(columns * rows));
-        let folded = quads.fold(x.as_slice());
+        let folded = orbits.fold(x.as_slice());
         let total = x.sum();
         let arms = (0..x.len()).map(|taxel| matrices.sensor().arm_m(taxel));
         let shares =
@@ -153,19 +155,19 @@ fn sums_are_those_of_the_coefficients() {
 }
 
 #[test]
-fn a_row_threshold_is_by_magnitude_and_the_same_for_all_classes() {
+fn a_row_threshold_is_by_magnitude_and_the_same_for_all_components() {
     for [columns, rows] in SIDES {
-        let (quads, matrices, dense) = small(columns, rows);
+        let (orbits, matrices, dense) = small(columns, rows);
         let p = 0.02;
-        let reduced = ReducedMatrices::new(&matrices, &quads, &Filter::F2 { p }).unwrap();
+        let reduced = ReducedMatrices::new(&matrices, &orbits, &Filter::F2 { p }).unwrap();
         for (name, dense) in ReducedName::ALL.into_iter().zip(&dense) {
-            let blocks = FoldedMatrix::new(dense, name.parity(), &quads).blocks;
+            let blocks = FoldedMatrix::new(dense, name.parity(), &orbits).blocks;
             for (q, row) in reduced.get(name).rows.iter().enumerate() {
                 assert!(!row.is_empty() && row.is_sorted_by_key(|&(column, _)| column));
-                for column in 0..quads.count() {
+                for column in 0..orbits.count() {
                     let kept = row.iter().any(|&(kept, _)| kept as usize == column);
                     // Away from the threshold by more than rounding.
-                    let ratio = (0..CLASSES)
+                    let ratio = (0..COMPONENTS)
                         .map(|c| (blocks[c][(q, column)] / blocks[c].row(q).amax()).abs())
                         .fold(0.0, f64::max);
                     assert!((ratio - 0.05).abs() < 1e-9 || kept == (ratio > 0.05), "{name} {q} {column}: {ratio}");
@@ -177,10 +179,10 @@ fn a_row_threshold_is_by_magnitude_and_the_same_for_all_classes() {
 
 #[test]
 fn a_band_is_scaled_to_the_block() {
-    let (quads, matrices, _) = small(6, 4);
-    // 24 taxels, 6 quads: l = 1, 4, 5, 22 of at most 22 keeps 5 (23 - l) / 23 diagonals on either side.
+    let (orbits, matrices, _) = small(6, 4);
+    // 24 taxels, 6 orbits: l = 1, 4, 5, 22 of at most 22 keeps 5 (23 - l) / 23 diagonals on either side.
     for (l, distance) in [(1, 4), (4, 4), (5, 3), (22, 0)] {
-        let reduced = ReducedMatrices::new(&matrices, &quads, &Filter::F1 { l }).unwrap();
+        let reduced = ReducedMatrices::new(&matrices, &orbits, &Filter::F1 { l }).unwrap();
         for name in ReducedName::ALL {
             for (q, row) in reduced.get(name).rows.iter().enumerate() {
                 let expected: Vec<usize> = (0..6).filter(|&column| q.abs_diff(column) <= distance).collect();
@@ -192,14 +194,15 @@ fn a_band_is_scaled_to_the_block() {
 
 #[test]
 fn filters_that_cannot_be_are_refused() {
-    let (quads, matrices, _) = small(5, 4);
-    let error = ReducedMatrices::new(&matrices, &quads, &Filter::F2 { p: 0.0005 }).unwrap_err();
+    let (orbits, matrices, _) = small(5, 4);
+    let error = ReducedMatrices::new(&matrices, &orbits, &Filter::F2 { p: 0.0005 }).unwrap_err();
     assert!(matches!(
         error,
         FilterError::EmptyFoldedRow { matrix: ReducedName::C33inv, row: 0, filter: MatrixFilter::F2 { .. } }
     ));
     assert!(error.to_string().contains("row 0 of the folded matrix C33inv"), "{error}");
-    let error = ReducedMatrices::new(&matrices, &quads, &Filter::F3 { scenes: Vec::new(), choices: None }).unwrap_err();
+    let error =
+        ReducedMatrices::new(&matrices, &orbits, &Filter::F3 { scenes: Vec::new(), choices: None }).unwrap_err();
     assert!(error.to_string().contains("plan = \"paper\""), "{error}");
 }
 

@@ -1,6 +1,6 @@
 //! Co, the sums over the frame and what the lanes multiply again: `sptfra_co`.
 
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 
 use crate::parameters::Parameters;
 use crate::plan::Plan;
@@ -44,7 +44,7 @@ pub fn cost(plan: &Plan) -> BlockCost {
     };
     if plan.channels() > 1 {
         let folded = 2 * plan.elements().next_power_of_two();
-        return block(0).with([memory("folded b", 1, folded, CLASSES as u32 * data, false)]);
+        return block(0).with([memory("folded b", 1, folded, COMPONENTS as u32 * data, false)]);
     }
     block(2).with([memory("A_p b", 1, 3 * taxels, data, false), memory("arms", 1, taxels, 2 * ARM_BITS, true)])
 }

@@ -1,6 +1,6 @@
 //! The field memory: `sptfra_field` of a folded grid, `sptfra_coefficient_field` where taxels are not folded.
 
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 
 use crate::parameters::Parameters;
 use crate::plan::Plan;
@@ -59,10 +59,12 @@ pub fn cost(plan: &Plan) -> BlockCost {
     if words > 1 {
         // A copy for a taxel, and one for the next.
         return block(words * multipliers).with([
-            memory("weights", 2 * CLASSES, weights, data, false),
-            memory("field", 2 * 3 * CLASSES, 2 * elements, data, false),
+            memory("weights", 2 * COMPONENTS, weights, data, false),
+            memory("field", 2 * 3 * COMPONENTS, 2 * elements, data, false),
         ]);
     }
-    block(multipliers)
-        .with([memory("weights", CLASSES, weights, data, false), memory("field", CLASSES, 6 * elements, data, false)])
+    block(multipliers).with([
+        memory("weights", COMPONENTS, weights, data, false),
+        memory("field", COMPONENTS, 6 * elements, data, false),
+    ])
 }

@@ -1,6 +1,6 @@
 //! The arithmetic of a plan: integers, every product rounded to the step of its result.
 
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 use golden::products::{ByPq, Number, Scalar, Step, put_moments};
 
 use crate::plan::Plan;
@@ -22,7 +22,7 @@ pub fn by_taxel(plan: &Plan) -> Scalar<Integer<'_>, 1> {
 }
 
 /// The reduced plan has four an orbit.
-pub fn by_orbit(plan: &Plan) -> Scalar<Integer<'_>, CLASSES> {
+pub fn by_orbit(plan: &Plan) -> Scalar<Integer<'_>, COMPONENTS> {
     Scalar::new(Integer { plan }, plan.orbits().all(), plan.taxels())
 }
 

@@ -4,7 +4,7 @@ use golden::design::{Design, Filter, PlanKind};
 use golden::filter::{FilterError, FilteredMatrices, nnz_of};
 use golden::matrices::Matrices;
 use golden::names::{MatrixName, ReducedName};
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 use golden::products::{Form, Source};
 use golden::reduced::ReducedMatrices;
 
@@ -29,7 +29,7 @@ impl<'a> Filtered<'a> {
         Ok(match design.algorithm.plan {
             PlanKind::Paper => Self::Thirteen(FilteredMatrices::new(matrices, filter)?, matrices),
             PlanKind::Reduced => {
-                Self::Ten(Box::new(ReducedMatrices::new(matrices, matrices.quads(), filter)?), matrices)
+                Self::Ten(Box::new(ReducedMatrices::new(matrices, matrices.orbits(), filter)?), matrices)
             }
         })
     }
@@ -64,7 +64,7 @@ impl<'a> Filtered<'a> {
                 one_channel(&(&matrices.c33.dense()).into(), factor)
             }
             (Self::Ten(ten, _), Source::Ten(name)) => {
-                let scaled = |row: &Vec<(u32, [f64; CLASSES])>| {
+                let scaled = |row: &Vec<(u32, [f64; COMPONENTS])>| {
                     row.iter().map(|&(column, channels)| (column, channels.map(|value| factor * value))).collect()
                 };
                 ten.get(name).rows.iter().map(scaled).collect()

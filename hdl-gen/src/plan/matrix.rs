@@ -1,7 +1,6 @@
 //! Coefficients as integers: one power-of-two scale per matrix.
 
-use golden::parity::CLASSES;
-use golden::products::{mirror, swapped};
+use golden::parity::{COMPONENTS, mirror, swapped};
 use nalgebra_sparse::CsrMatrix;
 
 use super::PlanError;
@@ -14,10 +13,10 @@ const FEWEST_USEFUL_BITS: u32 = 6;
 
 /// A column and its coefficients, one a channel. The paper's plan has one channel; in the reduced plan the four channels
 /// are the parity components of the operand.
-pub type Entry = (u32, [i32; CLASSES]);
+pub type Entry = (u32, [i32; COMPONENTS]);
 
 /// Rows of real coefficients, before they are quantised; the same shape as [`QuantisedMatrix::rows`].
-pub type RealRows = Vec<Vec<(u32, [f64; CLASSES])>>;
+pub type RealRows = Vec<Vec<(u32, [f64; COMPONENTS])>>;
 
 /// A sparse matrix with integer coefficients, `value = coefficient * 2^lsb`, rows in order, columns ascending.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -90,7 +89,7 @@ impl QuantisedMatrix {
 
     fn at(name: &str, matrix: &RealRows, lsb: i32) -> Self {
         let scale = pow2(-lsb);
-        let integer = |&(column, values): &(u32, [f64; CLASSES])| -> Entry {
+        let integer = |&(column, values): &(u32, [f64; COMPONENTS])| -> Entry {
             (column, values.map(|value| (value * scale).round() as i32))
         };
         let rows = matrix.iter().map(|row| row.iter().map(integer).collect()).collect();
@@ -102,7 +101,7 @@ impl QuantisedMatrix {
         let sum = |row: &Vec<Entry>, channel: usize| -> i64 {
             row.iter().map(|(_, channels)| i64::from(channels[channel].abs())).sum()
         };
-        let row_sum = rows.iter().flat_map(|row| (0..CLASSES).map(|channel| sum(row, channel))).max().unwrap_or(0);
+        let row_sum = rows.iter().flat_map(|row| (0..COMPONENTS).map(|channel| sum(row, channel))).max().unwrap_or(0);
         Self { name: name.to_owned(), rows, lsb, row_sum, dropped: 0 }
     }
 
@@ -147,7 +146,7 @@ impl QuantisedMatrix {
             let squares: f64 = values().map(|value| value * value).sum();
             if squares > 0.0 { values().count() as f64 * of_step / squares } else { 0.0 }
         };
-        (0..CLASSES).map(channel).fold(0.0, f64::max).sqrt()
+        (0..COMPONENTS).map(channel).fold(0.0, f64::max).sqrt()
     }
 
     /// Row `row` times one channel's `operand` in the accumulator, exactly.
@@ -161,14 +160,14 @@ impl QuantisedMatrix {
     /// Largest row sum of the magnitudes of the four-channel matrix's unfolded coefficients, times four: with it, a bound
     /// of the taxels' operands is one of the taxels' results.
     pub fn unfolded_row_sum(&self) -> i64 {
-        let mirrored = |channels: &[i32; CLASSES], image: usize| -> i64 {
+        let mirrored = |channels: &[i32; COMPONENTS], image: usize| -> i64 {
             let signed = channels.iter().enumerate().map(|(component, &value)| {
                 if golden::parity::sign(component, image) < 0.0 { -i64::from(value) } else { i64::from(value) }
             });
             signed.sum::<i64>().abs()
         };
         let of_row = |row: &Vec<Entry>| -> i64 {
-            row.iter().map(|(_, channels)| (0..CLASSES).map(|image| mirrored(channels, image)).sum::<i64>()).sum()
+            row.iter().map(|(_, channels)| (0..COMPONENTS).map(|image| mirrored(channels, image)).sum::<i64>()).sum()
         };
         self.rows.iter().map(of_row).max().unwrap_or(0)
     }

@@ -39,7 +39,7 @@ pub mod words;
 
 use golden::design::{Design, Outputs, PlanKind, Scaling};
 use golden::matrices::MatrixName;
-use golden::parity::{CLASSES, Quads};
+use golden::parity::{COMPONENTS, Orbits};
 use serde::Serialize;
 
 use crate::estimators::EstimatorPlan;
@@ -177,7 +177,7 @@ impl Plan {
     }
 
     /// The orbits of the sensor's grid.
-    pub fn orbits(&self) -> Quads {
+    pub fn orbits(&self) -> Orbits {
         orbits(&self.design)
     }
 
@@ -220,12 +220,12 @@ impl Plan {
 fn channels(design: &Design) -> usize {
     match design.algorithm.plan {
         PlanKind::Paper => 1,
-        PlanKind::Reduced => CLASSES,
+        PlanKind::Reduced => COMPONENTS,
     }
 }
 
-fn orbits(design: &Design) -> Quads {
-    Quads::new(design.sensor.columns, design.sensor.rows)
+fn orbits(design: &Design) -> Orbits {
+    Orbits::new(design.sensor.columns, design.sensor.rows)
 }
 
 fn elements(design: &Design) -> usize {

@@ -15,7 +15,7 @@
 //! `outputs = "resultants"` there is nothing else.
 
 use golden::design::{Design, Filter, Outputs, PlanKind};
-use golden::parity::Quads;
+use golden::parity::Orbits;
 use golden::products::{Epilogue, ProductList, Step, Vector};
 
 use super::product::{Block, Preload, Product};
@@ -42,7 +42,7 @@ fn mirrored_side(design: &Design) -> Option<usize> {
     let sensor = &design.sensor;
     let [x, y] = sensor.pitch_mm;
     let square = sensor.columns == sensor.rows && x.to_bits() == y.to_bits();
-    let side = Quads::new(sensor.columns, sensor.rows).columns();
+    let side = Orbits::new(sensor.columns, sensor.rows).columns();
     // F1 keeps another pattern on each side of the diagonal; and the mirror of many orbits is a large table unless it
     // is an exchange of bits.
     let kept = matches!(design.algorithm.filter, Filter::None);

@@ -2,8 +2,9 @@
 
 use std::ops::Deref;
 
-use golden::parity::CLASSES;
-pub use golden::products::{Coefficients, Epilogue, Step, Vector, mirror, swapped};
+pub use golden::parity::mirror;
+use golden::parity::{COMPONENTS, swapped};
+pub use golden::products::{Coefficients, Epilogue, Step, Vector};
 use serde::Serialize;
 
 use super::format::round_shift;
@@ -129,7 +130,7 @@ impl Product {
     }
 
     /// For each component of the result, the channel that computes it.
-    pub fn channels(&self) -> [usize; CLASSES] {
+    pub fn channels(&self) -> [usize; COMPONENTS] {
         std::array::from_fn(
             |component| if self.mirrored.is_some() { swapped(component) } else { component } ^ self.parity,
         )

@@ -1,7 +1,7 @@
 //! From a design to its plan: on its own lanes, or on the fewest that meet a target latency, or what else would.
 
 use golden::design::{Design, Estimator, MAX_LANES, Optimise, Outputs, PlanKind, STREAM_BITS};
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 
 use super::build::{SharedPlan, check_widths};
 use super::{Plan, PlanError};
@@ -67,7 +67,7 @@ fn meet(shared: &SharedPlan, design: &Design, target_us: f64) -> Result<Plan, Pl
 
 /// A multiplier for each component on every lane.
 fn lanes() -> impl DoubleEndedIterator<Item = usize> {
-    (1..=MAX_LANES / CLASSES).map(|each| CLASSES * each)
+    (1..=MAX_LANES / COMPONENTS).map(|each| COMPONENTS * each)
 }
 
 fn is_met(plan: &Plan, target_us: f64) -> bool {

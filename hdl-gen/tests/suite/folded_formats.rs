@@ -1,6 +1,6 @@
 //! Formats of the reduced plan: that the worst case fits, folded and unfolded.
 
-use golden::parity::{CLASSES, Quads, sign};
+use golden::parity::{COMPONENTS, Orbits, sign};
 use golden::products::RESULTANTS;
 use golden::reduced::ReducedName;
 use golden::solver::Solver;
@@ -42,7 +42,7 @@ fn result_lsb_and_bound(product: &Product, folded: &FoldedFormats) -> (i32, i64)
 fn largest_part(plan: &Plan, folded: &FoldedFormats, q: u8) -> i64 {
     let product = plan.products.iter().find(|product| product.result == Vector::Residual(q)).expect("a part");
     let (matrix, bound) = (&plan.matrices[product.matrix], folded.of(product.operand()).bound);
-    let places = (0..matrix.rows.len()).flat_map(|row| (0..CLASSES).map(move |channel| (row, channel)));
+    let places = (0..matrix.rows.len()).flat_map(|row| (0..COMPONENTS).map(move |channel| (row, channel)));
     places.map(|(row, channel)| largest_result(matrix, row, channel, bound, product.shift)).max().expect("rows")
 }
 
@@ -72,7 +72,7 @@ fn check_folded(plan: &Plan, folded: &FoldedFormats) {
                 assert!(round_shift(accumulator, product.shift) <= bound);
                 continue;
             }
-            for channel in 0..CLASSES {
+            for channel in 0..COMPONENTS {
                 let result = largest_result(matrix, row, channel, operand.bound, product.shift) + more;
                 // Forces may have a tighter bound than the worst r allows: the frames of the model's tests do that.
                 let force = matches!(product.result, Vector::Force(_));
@@ -98,11 +98,11 @@ fn check_sums(plan: &Plan, folded: &FoldedFormats) {
 }
 
 /// What stands in the four components of each orbit, from the values of the taxels.
-fn fold(orbits: &Quads, values: &[i64], shift: u32) -> Vec<[i64; CLASSES]> {
+fn fold(orbits: &Orbits, values: &[i64], shift: u32) -> Vec<[i64; COMPONENTS]> {
     let signed = |component: usize, image: usize, value: i64| if sign(component, image) < 0.0 { -value } else { value };
     (0..orbits.count())
         .map(|orbit| {
-            let images = orbits.members(orbit);
+            let images = orbits.images(orbit);
             std::array::from_fn(|component| {
                 round_shift((0..4).map(|s| signed(component, s, values[images[s]])).sum(), shift)
             })
@@ -132,12 +132,12 @@ fn check_unfolded(plan: &Plan, folded: &FoldedFormats) {
         for (row, image) in (0..matrix.rows.len()).flat_map(|row| (0..4).map(move |image| (row, image))) {
             let mut values = vec![0.0; plan.taxels()];
             for &(column, channels) in &matrix.rows[row] {
-                for (s, taxel) in orbits.members(column as usize).into_iter().enumerate() {
+                for (s, taxel) in orbits.images(column as usize).into_iter().enumerate() {
                     let weight = |channel: usize| {
                         let result = sign(channel ^ product.parity, image);
                         f64::from(channels[channel]) * result * sign(channel, s)
                     };
-                    values[taxel] += (0..CLASSES).map(weight).sum::<f64>();
+                    values[taxel] += (0..COMPONENTS).map(weight).sum::<f64>();
                 }
             }
             for direction in [1.0, -1.0] {
@@ -145,14 +145,14 @@ fn check_unfolded(plan: &Plan, folded: &FoldedFormats) {
                 let operand = fold(&orbits, &values.iter().map(chosen).collect::<Vec<_>>(), shift);
                 let result = |channel: usize| {
                     let entries = matrix.rows[row].iter();
-                    let of_entry = |&(column, channels): &(u32, [i32; CLASSES])| {
+                    let of_entry = |&(column, channels): &(u32, [i32; COMPONENTS])| {
                         product_of(channels[channel], operand[column as usize][channel], matrix.dropped)
                     };
                     let sum = entries.map(of_entry).sum();
                     let result = round_shift(sum, product.shift);
                     if sign(channel ^ product.parity, image) < 0.0 { -result } else { result }
                 };
-                let value = (0..CLASSES).map(result).sum::<i64>();
+                let value = (0..COMPONENTS).map(result).sum::<i64>();
                 let more = match product.epilogue {
                     // A taxel's value has a quarter of the step.
                     Epilogue::AddStress => (stress as f64 * pow2(plan.formats.stress.lsb - plan.formats.u.lsb)) as i64,

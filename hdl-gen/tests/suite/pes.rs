@@ -2,14 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 use hdl_gen::plan::matrix::{Entry, QuantisedMatrix, product as product_of};
 use hdl_gen::plan::product::{Epilogue, Product, Vector, mirror, take_to_operand};
 use hdl_gen::plan::schedule::{PeProgram, Program, RESULT_BUFFERS, Schedule, SegmentKind, WriteBackSlot};
 use hdl_gen::timing::latency::ISSUE_TO_RESULT;
 
 /// The sums of one row, a channel each.
-pub type Sums = [i64; CLASSES];
+pub type Sums = [i64; COMPONENTS];
 
 /// What a PE holds for the collector.
 struct Held {
@@ -160,7 +160,7 @@ impl Run<'_> {
                 SegmentKind::Row => pe.results.push_back(Held { from: issued + ISSUE_TO_RESULT, sums }),
                 SegmentKind::Head => {
                     pe.heads.push((issued, sums));
-                    pe.results.push_back(Held { from: issued + ISSUE_TO_RESULT, sums: [i64::MIN; CLASSES] });
+                    pe.results.push_back(Held { from: issued + ISSUE_TO_RESULT, sums: [i64::MIN; COMPONENTS] });
                 }
                 SegmentKind::Tail => pe.carries.push(Carry { issued, sums }),
                 SegmentKind::Idle => {}

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use golden::design::{Design, PlanKind};
-use golden::parity::{CLASSES, FoldedMatrix, Quads, sign};
+use golden::parity::{COMPONENTS, FoldedMatrix, Orbits, sign};
 use hdl_gen::model::{AT_BOUND, Model, SUMMARY_WORDS};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::matrix::{Entry, QuantisedMatrix};
@@ -29,13 +29,13 @@ pub fn signed(component: usize, image: usize, value: i64) -> i64 {
 }
 
 /// A matrix of whole numbers with the mirror symmetry `parity`, from numbers for its rows at image 0 of each orbit.
-pub fn symmetric(orbits: &Quads, parity: usize, numbers: &[i32]) -> DMatrix<f64> {
+pub fn symmetric(orbits: &Orbits, parity: usize, numbers: &[i32]) -> DMatrix<f64> {
     let m = orbits.taxels();
     let mut dense = DMatrix::zeros(m, m);
     for orbit in 0..orbits.count() {
-        let rows = orbits.members(orbit);
+        let rows = orbits.images(orbit);
         for column in 0..orbits.count() {
-            let columns = orbits.members(column);
+            let columns = orbits.images(column);
             for s in 0..4 {
                 // All that must be the same or the opposite by symmetry adds up: so it is, also on the centre lines.
                 let value = f64::from(numbers[(orbit * m + columns[s]) % numbers.len()]);
@@ -49,7 +49,7 @@ pub fn symmetric(orbits: &Quads, parity: usize, numbers: &[i32]) -> DMatrix<f64>
 }
 
 /// A product of the lanes with four times the matrix: on centre lines its blocks have quarters.
-pub fn stored(orbits: &Quads, parity: usize, dense: &DMatrix<f64>) -> QuantisedMatrix {
+pub fn stored(orbits: &Orbits, parity: usize, dense: &DMatrix<f64>) -> QuantisedMatrix {
     let folded = FoldedMatrix::new(&(dense * 4.0), parity, orbits);
     let entry = |row: usize, column: usize| -> Entry {
         let channels = folded.blocks.each_ref().map(|block| block[(row, column)]);
@@ -62,14 +62,14 @@ pub fn stored(orbits: &Quads, parity: usize, dense: &DMatrix<f64>) -> QuantisedM
 }
 
 /// A component of one orbit of a vector of one value a taxel.
-pub fn folded(orbits: &Quads, component: usize, orbit: usize, x: &[i64]) -> i64 {
-    let images = orbits.members(orbit);
+pub fn folded(orbits: &Orbits, component: usize, orbit: usize, x: &[i64]) -> i64 {
+    let images = orbits.images(orbit);
     (0..4).map(|s| signed(component, s, x[images[s]])).sum()
 }
 
 /// What the lanes make of a vector of one value a taxel: folded, through the schedule, unfolded. Sixteen times the
 /// product with the matrix.
-fn through_the_lanes(orbits: &Quads, product: &Product, matrix: QuantisedMatrix, lanes: usize, x: &[i64]) -> Vec<i64> {
+fn through_the_lanes(orbits: &Orbits, product: &Product, matrix: QuantisedMatrix, lanes: usize, x: &[i64]) -> Vec<i64> {
     let n = orbits.count();
     let folded = |component: usize, orbit: usize| folded(orbits, component, orbit, x);
     let (products, matrices) = (std::slice::from_ref(product), [matrix]);
@@ -84,12 +84,12 @@ fn through_the_lanes(orbits: &Quads, product: &Product, matrix: QuantisedMatrix,
 }
 
 /// The values at the taxels, from the components of each orbit.
-pub fn unfolded(orbits: &Quads, components: impl Fn(usize) -> [i64; CLASSES]) -> Vec<i64> {
+pub fn unfolded(orbits: &Orbits, components: impl Fn(usize) -> [i64; COMPONENTS]) -> Vec<i64> {
     let mut result = vec![0; orbits.taxels()];
     for orbit in 0..orbits.count() {
         let components = components(orbit);
-        for (s, taxel) in orbits.members(orbit).into_iter().enumerate() {
-            result[taxel] = (0..CLASSES).map(|component| signed(component, s, components[component])).sum();
+        for (s, taxel) in orbits.images(orbit).into_iter().enumerate() {
+            result[taxel] = (0..COMPONENTS).map(|component| signed(component, s, components[component])).sum();
         }
     }
     result
@@ -129,7 +129,7 @@ proptest! {
         numbers in proptest::collection::vec(-2_000..2_000_i32, 256),
         x in proptest::collection::vec(-1_000_000..1_000_000_i64, 49),
     ) {
-        let orbits = Quads::new(columns, rows);
+        let orbits = Orbits::new(columns, rows);
         let dense = symmetric(&orbits, parity, &numbers);
         let x = &x[..orbits.taxels()];
         let matrix = stored(&orbits, parity, &dense);
@@ -144,7 +144,7 @@ proptest! {
         numbers in proptest::collection::vec(-2_000..2_000_i32, 256),
         x in proptest::collection::vec(-1_000_000..1_000_000_i64, 49),
     ) {
-        let orbits = Quads::new(side, side);
+        let orbits = Orbits::new(side, side);
         let dense = symmetric(&orbits, 1, &numbers);
         let other = |taxel: usize| mirror(taxel, side);
         let mirrored = DMatrix::from_fn(side * side, side * side, |row, column| dense[(other(row), other(column))]);

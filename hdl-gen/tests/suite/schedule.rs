@@ -1,6 +1,6 @@
 //! The schedule: who computes what, and when.
 
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::matrix::{Entry, QuantisedMatrix};
 use hdl_gen::plan::product::{Block, Coefficients, Epilogue, Product, SUM_ROWS, Step, Vector, take_to_operand};
@@ -22,7 +22,7 @@ fn paper_products() -> Vec<Product> {
 fn operand(vector: Vector, element: usize) -> Sums {
     let seed = vector.name().bytes().fold(7, |seed: u64, byte| seed.wrapping_mul(131) + u64::from(byte));
     std::array::from_fn(|channel| {
-        let index = (CLASSES * element + channel) as u64;
+        let index = (COMPONENTS * element + channel) as u64;
         (index.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(seed << 30) >> 40) as i64 - (1 << 23)
     })
 }
@@ -49,7 +49,7 @@ fn check_one(products: &[Product], matrices: &[QuantisedMatrix], pes: usize, ahe
             let parts = product.operands.iter().flat_map(|&part| (0..size).map(move |element| operand(part, element)));
             parts.map(|channels| channels[channel]).collect()
         };
-        let operands: Vec<Vec<i64>> = (0..CLASSES).map(whole).collect();
+        let operands: Vec<Vec<i64>> = (0..COMPONENTS).map(whole).collect();
         let expected = |matrix: &QuantisedMatrix, row: usize| -> Sums {
             std::array::from_fn(|channel| matrix.row_product(row, channel, &operands[channel]))
         };
@@ -175,7 +175,7 @@ fn matrix(size: usize, rows: Vec<Vec<Entry>>) -> QuantisedMatrix {
 }
 
 /// Coefficients of all four channels.
-fn any_channels() -> impl Strategy<Value = [i32; CLASSES]> {
+fn any_channels() -> impl Strategy<Value = [i32; COMPONENTS]> {
     proptest::array::uniform4(-131_072_i32..131_072)
 }
 

@@ -4,7 +4,7 @@
 use golden::design::{Design, Estimator, Tension};
 use golden::estimators::RANGE;
 use golden::estimators::line::{LEVEL, MAX_LINE_RATIO};
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 use golden::products::{Engine, ProductList};
 use golden::reduced::ReducedMatrices;
 use golden::solver::{PULLING, Solver, Status};
@@ -18,7 +18,7 @@ const STEPS: usize = 24;
 #[derive(Debug)]
 pub struct Single<'a> {
     design: &'a Design,
-    engine: Engine<f32, &'a ReducedMatrices, CLASSES>,
+    engine: Engine<f32, &'a ReducedMatrices, COMPONENTS>,
 }
 
 impl<'a> Single<'a> {
@@ -27,8 +27,8 @@ impl<'a> Single<'a> {
         let line = design.algorithm.estimator == Estimator::Line;
         line.then_some(())?;
         let list = ProductList::paper().fewer_products(true).folded();
-        let quads = solver.matrices().quads();
-        Some(Self { design, engine: Engine::new(list, solver.reduced()?, quads.all(), quads.taxels()) })
+        let orbits = solver.matrices().orbits();
+        Some(Self { design, engine: Engine::new(list, solver.reduced()?, orbits.all(), orbits.taxels()) })
     }
 
     /// The answer to one frame in Pa.
@@ -140,7 +140,7 @@ impl<'a> Single<'a> {
     }
 }
 
-/// The middle of where the sum of hinges is within `allowance` of its least value on [-1, 1], and whether that value is
+/// The middle of where the sum of rectifiers is within `allowance` of its least value on [-1, 1], and whether that value is
 /// at an end.
 fn search(alpha: &[f32], beta: &[f32], allowance: f32) -> (f32, bool) {
     let value = |t: f32| -> f32 { alpha.iter().zip(beta).map(|(a, b)| (a + t * b).max(0.0)).sum() };

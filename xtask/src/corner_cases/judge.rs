@@ -5,7 +5,7 @@ use golden::dead_taxels::DeadTaxels;
 use golden::design::{Design, Estimator, Scaling};
 use golden::matrices::Matrices;
 use golden::metrics::{ContactErrors, field_error};
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 use golden::products::{Engine, ProductList};
 use golden::reduced::ReducedMatrices;
 use golden::solver::{Solution, Solver};
@@ -164,7 +164,7 @@ fn of_contacts(case: &Case, frames: &[Vec<f64>]) -> Option<ContactErrors> {
 
 /// The fields of the reduced plan in f64, with a friction that something else has found.
 struct Fields<'a> {
-    engine: Engine<f64, &'a ReducedMatrices, CLASSES>,
+    engine: Engine<f64, &'a ReducedMatrices, COMPONENTS>,
     full_scale: f64,
     gain: f64,
 }
@@ -172,10 +172,10 @@ struct Fields<'a> {
 impl<'a> Fields<'a> {
     /// From the matrices of a solver; `None` for another plan.
     fn new(design: &Design, solver: &'a Solver) -> Option<Self> {
-        let quads = solver.matrices().quads();
+        let orbits = solver.matrices().orbits();
         let list = ProductList::paper().fewer_products(true).folded();
         Some(Self {
-            engine: Engine::new(list, solver.reduced()?, quads.all(), quads.taxels()),
+            engine: Engine::new(list, solver.reduced()?, orbits.all(), orbits.taxels()),
             full_scale: design.hardware.full_scale_in_frames(),
             gain: design.algorithm.constants().gain().unwrap_or(1.0),
         })
@@ -251,11 +251,11 @@ fn is_silent(case: &Case, answer: &Answer, frame: &[f64]) -> bool {
 
 /// `|A f - b| / (|A| |f| + |b|)` in the maximum norm; b as it is after clipping.
 fn backward_error(matrices: &Matrices, answer: &Answer, frame: &[f64], full_scale: f64) -> f64 {
-    let quads = matrices.quads();
-    let folded = answer.field.each_ref().map(|force| quads.fold(force));
+    let orbits = matrices.orbits();
+    let folded = answer.field.each_ref().map(|force| orbits.fold(force));
     let parts = [&matrices.c31, &matrices.c32, &matrices.c33];
     let products: Vec<Vec<f64>> =
-        parts.iter().zip(&folded).map(|(matrix, force)| quads.unfold(&matrix.apply(force))).collect();
+        parts.iter().zip(&folded).map(|(matrix, force)| orbits.unfold(&matrix.apply(force))).collect();
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0_f64, |max, value| max.max(value.abs()));
     let b: Vec<f64> = frame.iter().map(|stress| stress.clamp(-full_scale, full_scale)).collect();
     let residual =

@@ -22,26 +22,26 @@ pub(crate) struct Found {
 pub(super) struct GridScratch {
     /// `u_q` of the taxels that may be in tension somewhere on the grid, the dead zone taken off.
     u: [Vec<f64>; 3],
-    /// Parts of the hinges' arguments that depend on the point's column, and on its row: taxel by taxel for each.
+    /// Parts of the rectifiers' arguments that depend on the point's column, and on its row: taxel by taxel for each.
     columns: Vec<f64>,
     rows: Vec<f64>,
-    /// The hinges' sums at all points.
+    /// The rectifiers' sums at all points.
     values: Vec<f64>,
 }
 
 /// `sum max(0, a + b)` over pairs.
-fn hinges(a: &[f64], b: &[f64]) -> f64 {
-    let hinge = |(a, b): (&f64, &f64)| {
+fn rectifiers(a: &[f64], b: &[f64]) -> f64 {
+    let rectifier = |(a, b): (&f64, &f64)| {
         let stress = a + b;
         if stress > 0.0 { stress } else { 0.0 }
     };
     let (chunks_a, rest_a) = a.as_chunks::<LANES>();
     let (chunks_b, rest_b) = b.as_chunks::<LANES>();
-    let rest: f64 = rest_a.iter().zip(rest_b).map(hinge).sum();
+    let rest: f64 = rest_a.iter().zip(rest_b).map(rectifier).sum();
     let mut sums = [0.0; LANES];
     for (a, b) in chunks_a.iter().zip(chunks_b) {
         for (sum, pair) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += hinge(pair);
+            *sum += rectifier(pair);
         }
     }
     sums.iter().sum::<f64>() + rest
@@ -109,7 +109,7 @@ pub(super) fn search(grid: Grid, u: [&[f64]; 3], dead_zone: f64, allowance: f64,
         rows.extend(u[2].iter().map(|u2| u2 * mu));
     }
     let at = |point: usize| point * taxels..(point + 1) * taxels;
-    evaluate(side, |row, column| hinges(&columns[at(column)], &rows[at(row)]), allowance, values);
+    evaluate(side, |row, column| rectifiers(&columns[at(column)], &rows[at(row)]), allowance, values);
 
     // The least value inside the grid and on its border.
     let (mut inside, mut on_border) = (f64::INFINITY, f64::INFINITY);
@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn a_symmetric_valley_has_its_centre_on_the_grid() {
-        // Hinges that rise away from (0.25, -0.5) along both axes.
+        // Rectifiers that rise away from (0.25, -0.5) along both axes.
         let u = vectors([[-0.25, 1.0, 0.0], [0.25, -1.0, 0.0], [0.5, 0.0, 1.0], [-0.5, 0.0, -1.0]]);
         let found = search(&u, 0.0, 0.5);
         assert_eq!(found.status, Status::default());

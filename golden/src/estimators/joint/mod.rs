@@ -23,7 +23,7 @@ pub use features::{STRESS_SCALE, TIE};
 pub use grid::Grid;
 pub(crate) use level_set::Found;
 use level_set::{GridScratch, search};
-pub(crate) use network::EXTRA_CLASSES;
+pub(crate) use network::EXTRA_COMPONENTS;
 pub use network::LARGEST;
 pub(crate) use network::{Network, NetworkScratch};
 

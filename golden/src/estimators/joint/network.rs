@@ -6,24 +6,24 @@
 
 use super::constants::{Correction, WEIGHT_FRACTION};
 use super::features::Features;
-use crate::parity::{CLASSES, Quads, butterfly};
+use crate::parity::{COMPONENTS, Orbits, butterfly};
 use crate::reduced::FoldedRows;
 
 /// The correction of a component is at most this, so that an unforeseen contact is never made much worse.
 pub const LARGEST: f64 = 1.0 / 4.0;
-/// Classes of the inputs behind the window: odd in x, odd in y, the same again, even.
-pub(crate) const EXTRA_CLASSES: [usize; 5] = [1, 2, 1, 2, 0];
+/// Parity components of the inputs behind the window: odd in x, odd in y, the same again, even.
+pub(crate) const EXTRA_COMPONENTS: [usize; 5] = [1, 2, 1, 2, 0];
 
-/// The network: one layer of hinges, then two sums.
+/// The network: one layer of rectifiers, then two sums.
 ///
-/// Mirrored features only differ in the signs of what is odd in x or y. So window and weights stand in the basis of the parity
-/// classes, and one product gives the hidden units of all four mirror images.
+/// Mirrored features only differ in the signs of what is odd in x or y. So window and weights stand in the basis of the
+/// parity components, and one product gives the hidden units of all four mirror images.
 #[derive(Clone, Debug)]
 pub(crate) struct Network {
     pub(crate) half_window: [usize; 2],
-    /// Members of each quad of the window, each once: index in the features, and the sign's bits.
+    /// Images of each orbit of the window, each once: index in the features, and the sign's bits.
     window: Vec<Vec<(usize, usize)>>,
-    /// Weights of each hidden unit (rows) for the words of inputs, by class: one for each quad and one for each other input.
+    /// Weights of each hidden unit (rows) by component: a word for each orbit, then one for each other input.
     hidden: FoldedRows,
     output: [Vec<f64>; 2],
 }
@@ -31,10 +31,10 @@ pub(crate) struct Network {
 /// Memory of the network, to be used again for the next frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NetworkScratch {
-    /// Words of inputs, by class.
-    inputs: Vec<[f64; CLASSES]>,
-    /// The hidden units' sums, by class.
-    sums: Vec<[f64; CLASSES]>,
+    /// Words of inputs, by component.
+    inputs: Vec<[f64; COMPONENTS]>,
+    /// The hidden units' sums, by component.
+    sums: Vec<[f64; COMPONENTS]>,
 }
 
 impl Network {
@@ -42,20 +42,20 @@ impl Network {
         let step = (-f64::from(WEIGHT_FRACTION)).exp2();
         let Correction { half_window, hidden, output } = correction;
         let [half_x, half_y] = *half_window;
-        let quads = Quads::new(2 * half_x + 1, 2 * half_y + 1);
+        let orbits = Orbits::new(2 * half_x + 1, 2 * half_y + 1);
         let weight = |unit: &Vec<i32>, input: usize| step * f64::from(unit[input]);
-        let window: Vec<Vec<(usize, usize)>> = (0..quads.count())
-            .map(|quad| quads.distinct(quad).map(|(member, place)| (place, member)).collect())
+        let window: Vec<Vec<(usize, usize)>> = (0..orbits.count())
+            .map(|orbit| orbits.distinct(orbit).map(|(image, place)| (place, image)).collect())
             .collect();
         let row = |unit: &Vec<i32>| {
-            let of_window = window.iter().enumerate().map(|(quad, members)| {
-                // The classes' shares: a weight of a member is their sum with its signs.
-                let sums = butterfly(placed(members.iter().map(|&(place, member)| (member, weight(unit, place)))));
-                let share = |class: usize| if quads.exists(class, quad) { sums[class] } else { 0.0 };
-                [0, 1, 2, 3].map(|class| share(class) / members.len() as f64)
+            let of_window = window.iter().enumerate().map(|(orbit, images)| {
+                // The components' shares: a weight of an image is their sum with its signs.
+                let sums = butterfly(placed(images.iter().map(|&(place, image)| (image, weight(unit, place)))));
+                let share = |component: usize| if orbits.exists(component, orbit) { sums[component] } else { 0.0 };
+                [0, 1, 2, 3].map(|component| share(component) / images.len() as f64)
             });
-            let of_extra = EXTRA_CLASSES.into_iter().zip(quads.taxels()..);
-            let words = of_window.chain(of_extra.map(|(class, input)| placed([(class, weight(unit, input))])));
+            let of_extra = EXTRA_COMPONENTS.into_iter().zip(orbits.taxels()..);
+            let words = of_window.chain(of_extra.map(|(component, input)| placed([(component, weight(unit, input))])));
             words.enumerate().map(|(word, weights)| (word as u32, weights)).collect()
         };
         let hidden = FoldedRows { parity: 0, rows: hidden.iter().map(row).collect() };
@@ -71,17 +71,17 @@ impl Network {
         let NetworkScratch { inputs, sums: of_units } = scratch;
         inputs.clear();
         inputs.extend(
-            self.window.iter().map(|members| {
-                butterfly(placed(members.iter().map(|&(place, member)| (member, features.values[place]))))
-            }),
+            self.window
+                .iter()
+                .map(|images| butterfly(placed(images.iter().map(|&(place, image)| (image, features.values[place]))))),
         );
-        let behind = &features.values[features.values.len() - EXTRA_CLASSES.len()..];
-        inputs.extend(EXTRA_CLASSES.into_iter().zip(behind).map(|(class, &value)| placed([(class, value)])));
-        of_units.resize(self.hidden.rows.len(), [0.0; CLASSES]);
+        let behind = &features.values[features.values.len() - EXTRA_COMPONENTS.len()..];
+        inputs.extend(EXTRA_COMPONENTS.into_iter().zip(behind).map(|(component, &value)| placed([(component, value)])));
+        of_units.resize(self.hidden.rows.len(), [0.0; COMPONENTS]);
         self.hidden.times(inputs, of_units);
         let mut sums = [0.0; 2];
-        for (unit, &by_class) in of_units.iter().enumerate() {
-            let images = butterfly(by_class).map(|sum| sum.max(0.0));
+        for (unit, &by_component) in of_units.iter().enumerate() {
+            let images = butterfly(by_component).map(|sum| sum.max(0.0));
             let [_, odd_x, odd_y, _] = butterfly(images);
             sums[0] += self.output[0][unit] * odd_x;
             sums[1] += self.output[1][unit] * odd_y;
@@ -91,8 +91,8 @@ impl Network {
 }
 
 /// Four values, those that are given in their places.
-fn placed(values: impl IntoIterator<Item = (usize, f64)>) -> [f64; CLASSES] {
-    let mut all = [0.0; CLASSES];
+fn placed(values: impl IntoIterator<Item = (usize, f64)>) -> [f64; COMPONENTS] {
+    let mut all = [0.0; COMPONENTS];
     values.into_iter().for_each(|(place, value)| all[place] = value);
     all
 }
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn the_classes_give_the_mean_over_the_mirror_images() {
+    fn the_components_give_the_mean_over_the_mirror_images() {
         let numbers = |length: usize, seed: i32| -> Vec<i32> {
             (0..length as i32).map(|at| (at * at * 37 + at * seed) % 701 - 350).collect()
         };

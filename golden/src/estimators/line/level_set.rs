@@ -1,4 +1,4 @@
-//! Exact minimum of a sum of hinges along a line.
+//! Exact minimum of a sum of rectifiers along a line.
 
 /// Range of the variable on the line: friction components beyond one are not searched.
 const RANGE: [f64; 2] = [-1.0, 1.0];
@@ -17,7 +17,7 @@ pub(super) struct LevelSet {
 /// Memory of the search, to be used again for the next frame.
 #[derive(Clone, Debug, Default)]
 pub struct LineScratch {
-    /// The hinges.
+    /// The rectifiers.
     pub(super) alpha: Vec<f64>,
     pub(super) beta: Vec<f64>,
     knots: Vec<f64>,
@@ -26,8 +26,8 @@ pub struct LineScratch {
 /// Finds where `B(t) = sum_i max(0, alpha_i + t beta_i)` on [-1, 1] is within `allowance` of its minimum.
 ///
 /// B is convex and piecewise linear, so the leftmost minimum is found by bisection over its breakpoints on the sign
-/// of the slope, and the ends of the level set by bisection and one interpolation: exact up to rounding. The hinges are
-/// those in `scratch`.
+/// of the slope, and the ends of the level set by bisection and one interpolation: exact up to rounding. The rectifiers
+/// are those in `scratch`.
 pub(super) fn level_set(scratch: &mut LineScratch, allowance: f64) -> LevelSet {
     let LineScratch { alpha, beta, knots } = scratch;
     let (alpha, beta) = (&*alpha, &*beta);
@@ -93,7 +93,7 @@ mod tests {
 
     #[test]
     fn a_flat_valley_is_found_whole() {
-        // Hinges that rise to the left of -0.25 and to the right of 0.75, with slope 2 and 1.
+        // Rectifiers that rise to the left of -0.25 and to the right of 0.75, with slope 2 and 1.
         let found = level_set(&[-0.5, -0.75], &[-2.0, 1.0], 0.0);
         assert_eq!((found.minimum, found.interval), (0.0, [-0.25, 0.75]));
         assert!(!found.at_bound);
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn no_hinge_at_all_leaves_the_whole_range() {
+    fn no_rectifier_at_all_leaves_the_whole_range() {
         let found = level_set(&[0.0, -3.0], &[0.0, 1.0], 0.0);
         assert_eq!(found.interval, [-1.0, 1.0]);
     }

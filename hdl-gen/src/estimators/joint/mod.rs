@@ -10,7 +10,7 @@ pub mod timing;
 
 use golden::design::Design;
 use golden::estimators::joint::{LARGEST, TIE};
-use golden::parity::{CLASSES, Quads};
+use golden::parity::{COMPONENTS, Orbits};
 use golden::sensor::Sensor;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -98,8 +98,8 @@ impl EstimatorBlock for JointPlan {
     }
 
     fn search_blocks(&self, sensor: &Sensor) -> Vec<BlockCost> {
-        let orbits = Quads::new(sensor.columns, sensor.rows).count();
-        let components = CLASSES as u32;
+        let orbits = Orbits::new(sensor.columns, sensor.rows).count();
+        let components = COMPONENTS as u32;
         let rows = orbits.max(FEWEST_ELEMENTS);
         // Of two frames, or one of them handed on.
         let taxels = || memory("u", 3, 2 * rows.next_power_of_two(), components * U_BITS, false);
@@ -109,11 +109,13 @@ impl EstimatorBlock for JointPlan {
         let mut blocks = vec![search.narrow(self.search.weighed()).with([taxels()])];
         if let Some(network) = &self.network {
             // The stresses of an orbit, and two of their shares of all.
-            let features = BlockCost::new("features", &["sptfra_features"], CLASSES + 2);
+            let features = BlockCost::new("features", &["sptfra_features"], COMPONENTS + 2);
             // Each image of a place in the window may be in any quarter of the grid.
-            blocks.push(features.with([handed_on(), memory("features", CLASSES * CLASSES, rows, STRESS_BITS, false)]));
+            blocks.push(
+                features.with([handed_on(), memory("features", COMPONENTS * COMPONENTS, rows, STRESS_BITS, false)]),
+            );
             // The hidden units' four parity components, and both friction components.
-            let units = BlockCost::new("network", &["sptfra_network"], CLASSES * network.at_once + READOUTS);
+            let units = BlockCost::new("network", &["sptfra_network"], COMPONENTS * network.at_once + READOUTS);
             let width = WEIGHT_BITS * components * network.at_once as u32;
             blocks.push(units.with([
                 memory("features, folded", 1, network.length, components * INPUT_BITS, false),

@@ -4,7 +4,7 @@
 //! weights too, and one pass over the weights gives the four sums from which the hidden units of all four images follow.
 
 use golden::estimators::joint::{Correction, EXTRA_INPUTS, STRESS_SCALE, WEIGHT_FRACTION, WEIGHT_LIMIT};
-use golden::parity::{CLASSES, sign};
+use golden::parity::{COMPONENTS, sign};
 use serde::Serialize;
 
 use crate::estimators::block::WEIGHT_BITS;
@@ -30,7 +30,7 @@ pub const NORMAL_DROP: u32 = 2;
 pub const RECIPROCAL_BITS: u32 = 16;
 
 /// A hidden unit's weights of one word of inputs, by component.
-type ByClass = [i32; CLASSES];
+type ByComponent = [i32; COMPONENTS];
 
 /// The network of a design.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -55,7 +55,7 @@ pub struct NetworkPlan {
     pub correction_shift: i32,
     /// Weights by pass and word, of each unit of the pass.
     #[serde(skip)]
-    pub weights: Vec<Vec<ByClass>>,
+    pub weights: Vec<Vec<ByComponent>>,
     /// Weights of each hidden unit in the x and the y component.
     #[serde(skip)]
     pub readout: Vec<[i32; 2]>,
@@ -66,7 +66,8 @@ impl NetworkPlan {
     /// multipliers that are worth it beside so many `lanes`.
     pub(super) fn new(correction: &Correction, coarser: i32, lanes: usize) -> Self {
         let half_window = correction.half_window;
-        let units: Vec<Vec<[f64; CLASSES]>> = correction.hidden.iter().map(|row| by_parity(row, half_window)).collect();
+        let units: Vec<Vec<[f64; COMPONENTS]>> =
+            correction.hidden.iter().map(|row| by_parity(row, half_window)).collect();
         let at_once = at_once(lanes);
         let length = units.first().map_or(0, Vec::len).max(at_once + LENGTH_OVER_UNITS);
         let passes = units.len().div_ceil(at_once);
@@ -80,12 +81,12 @@ impl NetworkPlan {
             };
             let narrow = |weight: &f64| fixed(*weight, lsb).abs() <= largest(WEIGHT_BITS);
             units.iter().flatten().flatten().all(narrow)
-                && units.iter().all(|unit| (0..CLASSES).all(|component| sum(unit, component) < SUM_LIMIT))
+                && units.iter().all(|unit| (0..COMPONENTS).all(|component| sum(unit, component) < SUM_LIMIT))
         };
         while !fits(weight_lsb) {
             weight_lsb += 1;
         }
-        let mut weights = vec![vec![[0; CLASSES]; at_once]; passes * length];
+        let mut weights = vec![vec![[0; COMPONENTS]; at_once]; passes * length];
         for (index, unit) in units.iter().enumerate() {
             for (word, of_component) in unit.iter().enumerate() {
                 weights[index / at_once * length + word][index % at_once] =
@@ -100,7 +101,7 @@ impl NetworkPlan {
         let slack = i128::from(length as u32) << (INPUT_BITS + 2); // what rounding the weights adds, at most
         let bound = scaled(i128::from(most) << (STRESS_BITS - 1), -(WEIGHT_FRACTION as i32) - weight_lsb) + slack;
         let mut unit_shift = 0;
-        while (bound >> unit_shift) + CLASSES as i128 >= 1 << (UNIT_BITS - 1) {
+        while (bound >> unit_shift) + COMPONENTS as i128 >= 1 << (UNIT_BITS - 1) {
             unit_shift += 1;
         }
 
@@ -155,7 +156,7 @@ fn at_once(lanes: usize) -> usize {
 }
 
 /// The same in f64.
-type ByRealComponent = [f64; CLASSES];
+type ByRealComponent = [f64; COMPONENTS];
 
 /// One hidden unit's weights by word and component. A place on the middle row or column has fewer images than four, and
 /// components without a weight: what is odd vanishes there.
@@ -168,7 +169,7 @@ fn by_parity(row: &[i32], half_window: [usize; 2]) -> Vec<ByRealComponent> {
     for y in 0..=half_y {
         for x in 0..=half_x {
             let vanishes = |bits: usize| (x == 0 && bits & 1 == 1) || (y == 0 && bits & 2 == 2);
-            let images: Vec<usize> = (0..CLASSES).filter(|&image| !vanishes(image)).collect();
+            let images: Vec<usize> = (0..COMPONENTS).filter(|&image| !vanishes(image)).collect();
             let at = |image: usize| {
                 let column = if image & 1 == 1 { half_x - x } else { half_x + x };
                 let line = if image & 2 == 2 { half_y - y } else { half_y + y };
@@ -218,7 +219,7 @@ mod tests {
         let row: Vec<i32> = (0..20).map(|index| 37 * index * index - 501 * index + 100).collect();
         let features: Vec<f64> = (0..20).map(|index| f64::from(index * 7 % 11) - 4.5).collect();
         let words = by_parity(&row, [1, 2]);
-        for signs in 0..CLASSES {
+        for signs in 0..COMPONENTS {
             let mut direct = 0.0;
             let mut folded = 0.0;
             for y in 0..5 {
@@ -233,12 +234,12 @@ mod tests {
             for (index, sign) in [sign_x, sign_y, sign_x, sign_y, 1.0].into_iter().enumerate() {
                 direct += f64::from(row[15 + index]) * sign * features[15 + index];
             }
-            for component in 0..CLASSES {
+            for component in 0..COMPONENTS {
                 let of_component = sign(component, signs);
                 for y in 0..3 {
                     for x in 0..2 {
                         let mut input = 0.0;
-                        for image in 0..CLASSES {
+                        for image in 0..COMPONENTS {
                             if (x == 0 && image & 1 == 1) || (y == 0 && image & 2 == 2) {
                                 continue;
                             }

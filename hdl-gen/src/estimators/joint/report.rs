@@ -2,7 +2,7 @@
 
 use golden::design::{Correction, Design, Kernel};
 use golden::kernel::gain;
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 
 use super::{JointPlan, SearchPlan, timing};
 use crate::plan::format::{MANY_LANES, short};
@@ -22,7 +22,7 @@ pub fn report(plan: &JointPlan, design: &Design) -> String {
             network.weight_lsb,
             network.passes,
             network.length,
-            CLASSES * network.at_once
+            COMPONENTS * network.at_once
         ),
         _ => "none: `sptfra calibrate` trains one".to_owned(),
     };

@@ -2,7 +2,7 @@
 
 use golden::design::{Design, Optimise};
 use golden::estimators::joint::{DEAD_ZONE, Grid, LEVEL};
-use golden::parity::{CLASSES, Quads};
+use golden::parity::{COMPONENTS, Orbits};
 use golden::sensor::Sensor;
 use serde::Serialize;
 
@@ -83,7 +83,7 @@ impl SearchPlan {
 
     /// Cycles in which all taxels are read.
     fn pass(&self, sensor: &Sensor) -> u64 {
-        (CLASSES * Quads::new(sensor.columns, sensor.rows).count() / self.taxels) as u64
+        (COMPONENTS * Orbits::new(sensor.columns, sensor.rows).count() / self.taxels) as u64
     }
 
     /// Cycles from the start of the search to the first row of points: the tensions of several taxels are added up before

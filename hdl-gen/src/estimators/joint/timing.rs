@@ -1,6 +1,6 @@
 //! Cycles of the grid search's modules: counts of the emitted pipelines, exact.
 
-use golden::parity::Quads;
+use golden::parity::Orbits;
 use golden::sensor::Sensor;
 
 use super::{JointPlan, NetworkPlan};
@@ -45,5 +45,5 @@ pub fn stages(sensor: &Sensor, plan: &JointPlan) -> Vec<Stage> {
 }
 
 fn orbits(sensor: &Sensor) -> u64 {
-    Quads::new(sensor.columns, sensor.rows).count() as u64
+    Orbits::new(sensor.columns, sensor.rows).count() as u64
 }

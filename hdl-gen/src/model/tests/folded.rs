@@ -2,7 +2,7 @@
 //! format, for any friction.
 
 use golden::design::Design;
-use golden::parity::{CLASSES, Quads, butterfly, sign};
+use golden::parity::{COMPONENTS, Orbits, butterfly, sign};
 use proptest::prelude::*;
 
 use super::super::{frame, integer, run};
@@ -62,14 +62,14 @@ fn unfolded(plan: &Plan, product: &Product) -> Vec<Vec<f64>> {
     let (orbits, matrix) = (plan.orbits(), &plan.matrices[product.matrix]);
     let mut dense = vec![vec![0.0; plan.taxels()]; plan.taxels()];
     for (orbit, row) in matrix.rows.iter().enumerate() {
-        for (s, result) in orbits.members(orbit).into_iter().enumerate() {
+        for (s, result) in orbits.images(orbit).into_iter().enumerate() {
             let mut line = vec![0.0; plan.taxels()];
             for &(column, channels) in row.iter().filter(|(column, _)| (*column as usize) < orbits.count()) {
-                for (t, taxel) in orbits.members(column as usize).into_iter().enumerate() {
+                for (t, taxel) in orbits.images(column as usize).into_iter().enumerate() {
                     let of_channel = |channel: usize| {
                         sign(channel ^ product.parity, s) * sign(channel, t) * f64::from(channels[channel])
                     };
-                    line[taxel] += (0..CLASSES).map(of_channel).sum::<f64>();
+                    line[taxel] += (0..COMPONENTS).map(of_channel).sum::<f64>();
                 }
             }
             dense[result] = line;
@@ -163,7 +163,7 @@ proptest! {
 #[test]
 fn folding_is_undone_but_for_a_factor_of_four() {
     for [columns, rows] in [[2, 2], [3, 3], [2, 5], [6, 4]] {
-        for images in Quads::new(columns, rows).all() {
+        for images in Orbits::new(columns, rows).all() {
             let values = images.map(|taxel| 1000 - 37 * (taxel * taxel) as i64);
             assert_eq!(butterfly(butterfly(values)), values.map(|value| 4 * value));
         }

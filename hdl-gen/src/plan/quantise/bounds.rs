@@ -1,6 +1,6 @@
 //! Worst cases of products, and the finest formats that hold them.
 
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 
 use super::super::format::{Format, largest};
 use super::super::matrix::QuantisedMatrix;
@@ -43,13 +43,13 @@ pub(super) fn folded((matrix, operand): Term, lsb: i32) -> i64 {
 pub(super) fn unfolded((matrix, operand): Term, lsb: i32) -> i64 {
     let product_lsb = matrix.lsb + operand.folded.lsb;
     let exact = i128::from(matrix.unfolded_row_sum()) * i128::from(operand.taxel.bound);
-    let of_operand = i128::from(matrix.row_sum) * CLASSES as i128 / 2;
+    let of_operand = i128::from(matrix.row_sum) * COMPONENTS as i128 / 2;
     let sum = scaled(exact, matrix.lsb + operand.taxel.lsb, lsb) + scaled(of_operand, product_lsb, lsb);
-    let dropped = match i128::from(matrix.dropped_steps()) * CLASSES as i128 {
+    let dropped = match i128::from(matrix.dropped_steps()) * COMPONENTS as i128 {
         0 => 0,
         steps => scaled(steps, matrix.accumulator_lsb(operand.folded), lsb),
     };
-    narrowed(sum + dropped + CLASSES as i128)
+    narrowed(sum + dropped + COMPONENTS as i128)
 }
 
 /// What a folded operand adds to results, folded and unfolded, at a step of `2^lsb`.

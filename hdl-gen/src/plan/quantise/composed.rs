@@ -5,7 +5,7 @@
 //! the products `A_p C33`, `A_p C31` and `A_p C32` of the stored coefficients are bounded, with what each rounding on
 //! the way can add.
 
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 use nalgebra::DMatrix;
 
 use crate::cores::LONG_BITS;
@@ -46,7 +46,7 @@ pub(super) fn worst(c: &[QuantisedMatrix], a: &[QuantisedMatrix], path: Path) ->
     // What the lanes drop of the products: of the parts of r, and of r, of three of them.
     let of_parts: f64 = c.iter().zip(friction).map(|(matrix, by)| by * dropped(matrix, path.weights.folded)).sum();
     let in_parts = if of_parts > 0.0 { of_parts + path.residual.step() } else { 0.0 };
-    let c: Vec<[DMatrix<f64>; CLASSES]> = c.iter().map(|matrix| blocks(matrix, count)).collect();
+    let c: Vec<[DMatrix<f64>; COMPONENTS]> = c.iter().map(|matrix| blocks(matrix, count)).collect();
     // |w| and y+ are rounded as they are folded, the parts of r as they are stored, and r again.
     let folding: f64 = c.iter().zip(friction).map(|(blocks, by)| by * row_sum(blocks)).sum();
     let rounding = 0.5
@@ -58,7 +58,7 @@ pub(super) fn worst(c: &[QuantisedMatrix], a: &[QuantisedMatrix], path: Path) ->
         let a = blocks(stored, count);
         let mut exact = [DMatrix::zeros(count, 1), DMatrix::zeros(count, 1)];
         for ((parity, c), by) in c.iter().enumerate().zip(friction) {
-            let product: [DMatrix<f64>; CLASSES] =
+            let product: [DMatrix<f64>; COMPONENTS] =
                 std::array::from_fn(|component| &a[component ^ parity] * &c[component]);
             let [folded, unfolded] = sums(&product);
             exact[0] += by * path.weights.folded.bound as f64 * path.weights.folded.step() * folded;
@@ -67,7 +67,7 @@ pub(super) fn worst(c: &[QuantisedMatrix], a: &[QuantisedMatrix], path: Path) ->
         let rounded = row_sum(&a) * rounding + dropped(stored, path.explained);
         Worst {
             folded: exact[0].max() + rounded,
-            unfolded: exact[1].max() + CLASSES as f64 * rounded,
+            unfolded: exact[1].max() + COMPONENTS as f64 * rounded,
             rounding: rounded,
         }
     };
@@ -85,7 +85,7 @@ pub(super) fn format(worst: Worst, mut lsb: i32, bits: u32) -> Format {
     // Rounding of a result, and of the four of a taxel.
     let bound = |lsb: i32| {
         let steps = |value: f64, more: f64| (value / f64::from(lsb).exp2()).ceil() + more;
-        steps(worst.folded, 1.0).max(steps(worst.unfolded, CLASSES as f64))
+        steps(worst.folded, 1.0).max(steps(worst.unfolded, COMPONENTS as f64))
     };
     while bound(lsb) > largest(bits) as f64 {
         lsb += 1;
@@ -101,7 +101,7 @@ pub(super) fn is_coarse(folded: Format, taxel_n: f64) -> bool {
 }
 
 /// The blocks of a matrix by component of the operand, in its unit.
-fn blocks(matrix: &QuantisedMatrix, count: usize) -> [DMatrix<f64>; CLASSES] {
+fn blocks(matrix: &QuantisedMatrix, count: usize) -> [DMatrix<f64>; COMPONENTS] {
     let step = f64::from(matrix.lsb).exp2();
     std::array::from_fn(|component| {
         let mut block = DMatrix::zeros(count, count);
@@ -120,13 +120,13 @@ fn dropped(matrix: &QuantisedMatrix, operand: Format) -> f64 {
 }
 
 /// Largest sum of magnitudes of a row of any block.
-fn row_sum(blocks: &[DMatrix<f64>; CLASSES]) -> f64 {
+fn row_sum(blocks: &[DMatrix<f64>; COMPONENTS]) -> f64 {
     let rows = |block: &DMatrix<f64>| block.row_iter().map(|row| row.lp_norm(1)).fold(0.0, f64::max);
     blocks.iter().map(rows).fold(0.0, f64::max)
 }
 
 /// For each row of orbits the largest sum of magnitudes of a block, and that of the unfolded matrix times four.
-fn sums(blocks: &[DMatrix<f64>; CLASSES]) -> [DMatrix<f64>; 2] {
+fn sums(blocks: &[DMatrix<f64>; COMPONENTS]) -> [DMatrix<f64>; 2] {
     let count = blocks[0].nrows();
     let folded =
         DMatrix::from_fn(count, 1, |row, _| blocks.iter().map(|block| block.row(row).lp_norm(1)).fold(0.0, f64::max));
@@ -141,7 +141,7 @@ fn sums(blocks: &[DMatrix<f64>; CLASSES]) -> [DMatrix<f64>; 2] {
             };
             (0..count).map(|column| signed(column).abs()).sum::<f64>()
         };
-        (0..CLASSES).map(of).sum()
+        (0..COMPONENTS).map(of).sum()
     });
     [folded, unfolded]
 }

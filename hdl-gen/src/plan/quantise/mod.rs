@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 use golden::design::Design;
 use golden::names::{MatrixName, ReducedName};
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 use golden::products::{Epilogue, Form, ProductList, Source, Step, Vector};
 
 use super::PlanError;
@@ -230,7 +230,7 @@ impl<'a> Pass<'a> {
         }
         let taxel = Format { lsb: y.lsb - FOLD_BITS as i32, ..y };
         // Four weights of one sign add up; the folded ones give up as many bits as that takes.
-        Operand { folded: narrowed(taxel, CLASSES as i64 * taxel.bound).0, taxel }
+        Operand { folded: narrowed(taxel, COMPONENTS as i64 * taxel.bound).0, taxel }
     }
 
     /// Residual and field. `taxel_n` is the force of a taxel at full scale.
@@ -247,7 +247,7 @@ impl<'a> Pass<'a> {
         };
         let (explained, shift) = narrowed(residual, combination(bounds::folded));
         // As many quarters of a step as the sum of four folded parts can be.
-        let taxel_bound = round_shift(combination(bounds::unfolded), shift) + CLASSES as i64;
+        let taxel_bound = round_shift(combination(bounds::unfolded), shift) + COMPONENTS as i64;
         let taxel = Format { lsb: explained.lsb - FOLD_BITS as i32, bound: taxel_bound, ..explained };
         self.operands.insert(Vector::Explained, Operand { folded: explained, taxel });
         self.friction();
@@ -269,7 +269,7 @@ impl<'a> Pass<'a> {
         let orbits = self.matrices[0].rows.len();
         let row = |orbit: usize| {
             let codes = [SELECT_ONE, SELECT_MU_X, SELECT_MU_Y].into_iter().enumerate();
-            codes.map(|(part, code)| ((part * orbits + orbit) as u32, [code; CLASSES])).collect()
+            codes.map(|(part, code)| ((part * orbits + orbit) as u32, [code; COMPONENTS])).collect()
         };
         let fraction = FRICTION_FRACTION + self.factors.friction_shift();
         let (rows, lsb) = ((0..orbits).map(row).collect(), -(fraction as i32));

@@ -1,6 +1,6 @@
 //! The rows of the sums, in front of `K0 y+`.
 
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 use golden::products::RESULTANTS;
 use golden::reduced::ReducedMatrices;
 
@@ -24,7 +24,7 @@ pub(super) fn quantise(
         .map(|row| {
             // y+ stands first among the operands, |w| next to it.
             let first_column = if matches!(row, 0 | 4) { 0 } else { count };
-            (0..count).map(|orbit| ((first_column + orbit) as u32, [0.0; CLASSES])).collect()
+            (0..count).map(|orbit| ((first_column + orbit) as u32, [0.0; COMPONENTS])).collect()
         })
         .collect();
     let mut put = |row: usize, channel: usize, weights: &[f64], unit: f64| {

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 
 use golden::contacts::{Finder, Found};
-use golden::parity::Quads;
+use golden::parity::Orbits;
 use golden::sensor::Sensor;
 use hdl_gen::model::contacts::count;
 use hdl_gen::timing::latency;
@@ -38,7 +38,7 @@ impl Case {
     fn elements(&self) -> Vec<Vec<usize>> {
         let Sensor { columns, rows, .. } = self.sensor;
         match self.channels {
-            4 => Quads::new(columns, rows).all().into_iter().map(Vec::from).collect(),
+            4 => Orbits::new(columns, rows).all().into_iter().map(Vec::from).collect(),
             _ => (0..columns * rows).map(|taxel| vec![taxel]).collect(),
         }
     }

@@ -123,7 +123,7 @@ fn worst_case(plan: &Plan, product: &Product) -> Vec<u32> {
             continue;
         }
         // The first taxel's row, unfolded.
-        for (s, taxel) in plan.orbits().members(column % plan.elements()).into_iter().enumerate() {
+        for (s, taxel) in plan.orbits().images(column % plan.elements()).into_iter().enumerate() {
             let value: f64 = (0..4).map(|channel| sign(channel, s) * f64::from(channels[channel])).sum();
             stress[taxel] = if value > 0.0 { -full_scale } else { full_scale };
         }

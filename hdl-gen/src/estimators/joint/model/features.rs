@@ -1,6 +1,6 @@
 //! What the correction sees: the stress of the normal forces alone, in a window around the contact, folded.
 
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 
 use super::super::super::Inputs;
 use super::super::{CENTRE_HALF, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS};
@@ -13,7 +13,7 @@ const CENTRE_FRACTION: u32 = FRICTION_FRACTION;
 /// The network's inputs.
 pub struct Features {
     /// By word and component, [`INPUT_FRACTION`] fraction bits.
-    pub inputs: Vec<[i64; CLASSES]>,
+    pub inputs: Vec<[i64; COMPONENTS]>,
     /// A value of the frame was clipped.
     pub saturated: bool,
 }
@@ -69,7 +69,7 @@ pub fn take(network: &NetworkPlan, inputs: &Inputs, mu: [i64; 2]) -> Features {
     let [mu_x, mu_y] = mu.map(|component| component << finer);
     let [left_x, left_y] = [0, 1].map(|axis| (centroid[axis] - (centre[axis] << CENTRE_FRACTION)) << finer);
     inputs.extend([[1 << INPUT_FRACTION, mu_x, mu_y, 0], [0, left_x, left_y, 0]]);
-    inputs.resize(network.length, [0; CLASSES]);
+    inputs.resize(network.length, [0; COMPONENTS]);
     Features { inputs, saturated }
 }
 

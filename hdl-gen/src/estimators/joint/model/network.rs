@@ -1,12 +1,12 @@
 //! The network of rectifiers in integers.
 
-use golden::parity::CLASSES;
+use golden::parity::COMPONENTS;
 
 use super::super::{CORRECTION_LIMIT, NetworkPlan};
 use crate::plan::format::round_shift;
 
 /// The correction of both friction components for the features by word and component.
-pub fn correction(network: &NetworkPlan, inputs: &[[i64; CLASSES]]) -> [i64; 2] {
+pub fn correction(network: &NetworkPlan, inputs: &[[i64; COMPONENTS]]) -> [i64; 2] {
     let mut sums = [0; 2];
     for (pass, weights) in network.weights.chunks(network.length).enumerate() {
         for (unit, readout) in network.readout.iter().skip(pass * network.at_once).take(network.at_once).enumerate() {
