@@ -5,13 +5,16 @@
 //! [`model::Model`] executes the plan in integers, bit for bit as the emitted hardware does.
 
 pub mod blocks;
+mod build;
 pub mod cores;
 pub mod emit;
 pub mod estimators;
+pub mod format;
 pub mod inspection;
 pub mod model;
 pub mod new_design;
 pub mod parameters;
 pub mod plan;
+pub mod resources;
 pub mod timing;
 pub mod write;

@@ -8,10 +8,10 @@ use golden::design::{Algorithm, Design, Overrun, PlanKind};
 use golden::progress::Progress;
 use golden::table::Table;
 use hdl_gen::emit::products;
+use hdl_gen::format::short;
 use hdl_gen::inspection::{contacts, doubled, excess, figures, narrow, shares};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::energy::Energy;
-use hdl_gen::plan::format::short;
 use hdl_gen::plan::luts::logic;
 use hdl_gen::plan::savings::savings;
 

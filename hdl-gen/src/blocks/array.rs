@@ -1,12 +1,12 @@
 //! The array of SpMV lanes with its sequencer and its collector: `sptfra_spmv_array`.
 
+use crate::format::address_bits;
 use crate::parameters::Parameters;
 use crate::plan::Plan;
-use crate::plan::format::address_bits;
 use crate::plan::layout::Place;
-use crate::plan::memory::memory;
 use crate::plan::product::{Coefficients, DESTINATIONS, SUMS_DESTINATION, destination, destination_bits};
-use crate::plan::resources::BlockCost;
+use crate::resources::BlockCost;
+use crate::resources::memory::memory;
 
 use super::row_width;
 use crate::timing::latency::PROGRAM_GAP;

@@ -3,6 +3,7 @@
 use golden::design::Samples;
 
 use crate::cores::{ACCUMULATOR_BITS, LONG_BITS};
+use crate::format::address_bits;
 use crate::parameters::Parameters;
 use crate::plan::Plan;
 use crate::plan::calibration::{CalibrationPlan, CurveMap};
@@ -12,12 +13,11 @@ use crate::plan::crosstalk;
 use crate::plan::curve::{self, CurvePlan, SEGMENT_BITS};
 use crate::plan::dead::{DeadPlan, WEIGHT_BITS};
 use crate::plan::factor::WITH_FRACTION;
-use crate::plan::format::address_bits;
 use crate::plan::gain::{GAIN_BITS, LARGEST_NUMBER};
-use crate::plan::memory::memory;
-use crate::plan::resources::BlockCost;
 use crate::plan::smoothing;
 use crate::plan::streams::Streams;
+use crate::resources::BlockCost;
+use crate::resources::memory::memory;
 use crate::timing::durations::Arrival;
 use crate::timing::latency;
 

@@ -1,15 +1,15 @@
 //! A calibration in RAM: the banks' control and its registers beside the core's.
 
 use crate::cores::LONG_BITS;
+use crate::format::address_bits;
 use crate::parameters::Parameters;
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
 use crate::plan::counts::EXPONENT_BITS;
 use crate::plan::dead::WEIGHT_BITS;
-use crate::plan::format::address_bits;
 use crate::plan::gain::GAIN_BITS;
-use crate::plan::memory::memory;
-use crate::plan::resources::BlockCost;
+use crate::resources::BlockCost;
+use crate::resources::memory::memory;
 
 /// Bits of a taxel's sum and extremes while it is tared.
 const TARE_BITS: u32 = 37 + 2 * LONG_BITS;

@@ -4,10 +4,10 @@ use golden::parity::COMPONENTS;
 
 use crate::parameters::Parameters;
 use crate::plan::Plan;
-use crate::plan::memory::memory;
 use crate::plan::product::Vector;
-use crate::plan::resources::BlockCost;
 use crate::plan::vector_formats::ARM_BITS;
+use crate::resources::BlockCost;
+use crate::resources::memory::memory;
 
 use super::place;
 

@@ -2,8 +2,8 @@
 
 use crate::parameters::Parameters;
 use crate::plan::Plan;
-use crate::plan::memory::memory;
-use crate::plan::resources::BlockCost;
+use crate::resources::BlockCost;
+use crate::resources::memory::memory;
 use crate::timing::latency;
 
 use super::row_width;

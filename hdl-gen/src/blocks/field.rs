@@ -4,9 +4,9 @@ use golden::parity::COMPONENTS;
 
 use crate::parameters::Parameters;
 use crate::plan::Plan;
-use crate::plan::memory::memory;
-use crate::plan::resources::BlockCost;
 use crate::plan::vector_formats::field_shifts;
+use crate::resources::BlockCost;
+use crate::resources::memory::memory;
 use crate::timing::buffers::WEIGHT_BUFFERS;
 
 /// The module.

@@ -2,9 +2,9 @@
 
 use crate::parameters::Parameters;
 use crate::plan::Plan;
-use crate::plan::memory::memory;
-use crate::plan::resources::BlockCost;
 use crate::plan::streams::WORD_BITS;
+use crate::resources::BlockCost;
+use crate::resources::memory::memory;
 use crate::timing::buffers::INGRESS_FRAMES;
 
 /// The instance's parameters.

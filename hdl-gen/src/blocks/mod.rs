@@ -19,11 +19,11 @@ pub mod registers;
 pub mod unfold;
 pub mod we;
 
+use crate::format::{FEWEST_ELEMENTS, address_bits};
 use crate::plan::Plan;
-use crate::plan::format::address_bits;
 use crate::plan::layout::Place;
-use crate::plan::product::{FEWEST_ELEMENTS, Vector};
-use crate::plan::resources::BlockCost;
+use crate::plan::product::Vector;
+use crate::resources::BlockCost;
 
 /// What each block of the design takes, in the data's order.
 pub fn costs(plan: &Plan) -> Vec<BlockCost> {

@@ -1,10 +1,10 @@
 //! Op behind the estimator: summary, status and output of a frame.
 
+use crate::format::{FRICTION_BITS, FRICTION_FRACTION};
 use crate::parameters::Parameters;
 use crate::plan::Plan;
-use crate::plan::format::{FRICTION_BITS, FRICTION_FRACTION};
-use crate::plan::resources::BlockCost;
 use crate::plan::vector_formats::field_shifts;
+use crate::resources::BlockCost;
 
 use super::field;
 use crate::timing::latency::{OUTPUT_LATENCY, SUMMARY_LATENCY};

@@ -3,7 +3,7 @@
 use crate::parameters::Parameters;
 use crate::plan::Plan;
 use crate::plan::product::Vector;
-use crate::plan::resources::BlockCost;
+use crate::resources::BlockCost;
 
 use super::place;
 

@@ -5,8 +5,8 @@ use golden::estimators::ERROR_RANGE;
 use super::rtl::library;
 use crate::cores::{Multiplier, cordic};
 use crate::estimators::{joint, line};
+use crate::format::FRICTION_FRACTION;
 use crate::model::{PULLING, inverse_gain};
-use crate::plan::format::FRICTION_FRACTION;
 use crate::plan::standard_error::SHARE_FRACTION;
 use crate::timing::latency::{
     STANDARD_ERROR, TAKE_TO_BUS, TAXEL_TO_CEAN, bus_to_sums, bus_to_taxels, bus_to_write, read_to_write,

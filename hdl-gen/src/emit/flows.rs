@@ -7,8 +7,8 @@ use serde::Serialize;
 use tera::{Context, Tera};
 
 use crate::plan::Plan;
-use crate::plan::resources::BlockResources;
 use crate::plan::streams::WORD_BITS;
+use crate::resources::BlockResources;
 
 use super::boards::Board;
 use super::registers::core_module;

@@ -2,8 +2,8 @@
 
 use std::io::Write;
 
+use crate::format::pow2;
 use crate::plan::Plan;
-use crate::plan::format::pow2;
 use crate::plan::matrix::QuantisedMatrix;
 
 use super::FileMap;

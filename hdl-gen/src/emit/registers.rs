@@ -5,9 +5,9 @@ use tera::Context;
 
 use crate::blocks::calibration;
 use crate::blocks::registers::Constants;
+use crate::format::address_bits;
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
-use crate::plan::format::address_bits;
 
 use super::instance::verilog;
 use super::template::{design_module, one};

@@ -4,15 +4,15 @@ use crate::blocks::array::{column_bits, pe_numbers};
 use crate::blocks::{bz, row_width};
 use crate::cores::LONG_BITS;
 use crate::estimators::WEIGHT_BITS;
+use crate::format::address_bits;
 use crate::plan::Plan;
 use crate::plan::counts::EXPONENT_BITS;
 use crate::plan::curve::{SEGMENT_BITS, SHIFT_BITS};
-use crate::plan::format::address_bits;
 use crate::plan::gain::GAIN_BITS;
 use crate::plan::product::{SUMS_DESTINATION, destination, destination_bits};
 use crate::plan::vector_formats::ARM_BITS;
 
-use crate::plan::memory::{BANK, banks};
+use crate::resources::memory::{BANK, banks};
 
 use super::FileMap;
 

@@ -10,9 +10,9 @@ use crate::blocks::{
     unfold, we,
 };
 use crate::cores::LONG_BITS;
+use crate::format::{SUM_BITS, address_bits};
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
-use crate::plan::format::{SUM_BITS, address_bits};
 use crate::plan::streams::Intake;
 use crate::plan::words::status_bits;
 

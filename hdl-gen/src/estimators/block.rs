@@ -6,9 +6,9 @@ use golden::sensor::Sensor;
 use serde_json::Value;
 
 use crate::cores::SHORT_BITS;
+use crate::format::{Format, address_bits};
 use crate::parameters::Parameters;
-use crate::plan::format::{Format, address_bits};
-use crate::plan::resources::BlockCost;
+use crate::resources::BlockCost;
 use crate::timing::durations::Stage;
 
 /// Width of a weight in the ROM files of an estimator.
@@ -71,7 +71,7 @@ impl Contact {
 /// What an estimator finds of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Estimate {
-    /// Friction components, [`crate::plan::format::FRICTION_FRACTION`] fraction bits.
+    /// Friction components, [`crate::format::FRICTION_FRACTION`] fraction bits.
     pub friction: [i64; 2],
     /// Nothing tells the direction.
     pub unknown: bool,

@@ -3,8 +3,8 @@
 use golden::parity::COMPONENTS;
 use golden::products::{ByPq, Number, Scalar, Step, put_moments};
 
+use crate::format::{FRICTION_FRACTION, round_shift};
 use crate::plan::Plan;
-use crate::plan::format::{FRICTION_FRACTION, round_shift};
 use crate::plan::matrix::product;
 use crate::plan::product::{SHARE_ROW, sum_channel, sum_row};
 use crate::plan::vector_formats::ARM_FRACTION;

@@ -18,9 +18,9 @@ use golden::products::{ByPq, Frame, Scalar};
 
 use crate::cores::{fixed_to_float, float_to_fixed};
 use crate::estimators::{Contact, Inputs};
+use crate::format::FRICTION_FRACTION;
 use crate::plan::calibration::{Bank, Reading};
 use crate::plan::dead::{DeadPlan, GUESSED_SHARE};
-use crate::plan::format::FRICTION_FRACTION;
 use crate::plan::product::{Coefficients, Product, Vector};
 use crate::plan::smoothing::{Average, MOST_RATE};
 use crate::plan::vector_formats::field_shifts;

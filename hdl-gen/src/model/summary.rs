@@ -1,7 +1,7 @@
 //! Op's summary in integers: friction components, resultants, friction coefficient, angle.
 
 use crate::cores::{cordic, divider};
-use crate::plan::format::FRICTION_FRACTION;
+use crate::format::FRICTION_FRACTION;
 use golden::estimators::ERROR_FRACTION;
 use golden::products::ByPq;
 

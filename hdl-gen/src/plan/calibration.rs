@@ -14,11 +14,11 @@ use serde::Serialize;
 use super::counts::OFFSET_FULL_SCALES;
 use super::curve_format::CurveFormat;
 use super::dead::DeadPlan;
-use super::format::{Format, largest, pow2};
 pub use super::gain::Reading;
 use super::gain::{GAIN_BITS, Gain, LARGEST_NUMBER, Scale};
 use super::{PlanError, Thresholds};
 use crate::cores::float_to_fixed;
+use crate::format::{Format, largest, pow2};
 
 /// How counts become stress where gains and offsets are written while frames run:
 /// `number = round(count * 2^exponent)`, then `stress = round(number * mantissa / 2^shift) + offset`, clipped to the full

@@ -5,9 +5,9 @@ use serde::Serialize;
 
 use super::PlanError;
 use super::curve::CurvePlan;
-use super::format::{Format, pow2};
 use super::gain::{GAIN_BITS, Gain, LARGEST_NUMBER, Reading, Scale};
 use crate::cores::float_to_fixed;
+use crate::format::{Format, pow2};
 
 /// Bits of the exponent at the float conversion.
 pub const EXPONENT_BITS: u32 = 10;

@@ -4,8 +4,8 @@ use golden::design::Design;
 use serde::Serialize;
 
 use super::factor::{Factor, WITH_FRACTION};
-use super::format::Format;
 use crate::cores::LONG_BITS;
+use crate::format::Format;
 
 /// Bits of a taxel's creep below a step of the stress.
 const FRACTION: u32 = 17;

@@ -3,8 +3,8 @@
 use golden::design::Design;
 use serde::Serialize;
 
-use super::format::{Format, largest, pow2, round_shift};
 use crate::cores::SHORT_BITS;
+use crate::format::{Format, largest, pow2, round_shift};
 
 /// Width of a factor: the shorter operand of a multiplier.
 const FACTOR_BITS: u32 = SHORT_BITS;

@@ -5,10 +5,10 @@ use serde::Serialize;
 
 use super::PlanError;
 use super::curve_format::CurveFormat;
-use super::format::{Format, largest, pow2, round_shift};
 use super::gain::{GAIN_BITS, Gain};
 use crate::cores::LONG_BITS;
 use crate::cores::float_to_fixed::{self, Converted};
+use crate::format::{Format, largest, pow2, round_shift};
 
 /// Width of the curve's value, the next multiplier's longer operand.
 const VALUE_BITS: u32 = LONG_BITS;

@@ -3,8 +3,8 @@
 use golden::design::{Curve, Design, Samples};
 use serde::Serialize;
 
-use super::format::{Format, largest};
 use crate::cores::LONG_BITS;
+use crate::format::{Format, largest};
 
 /// Width of a count on the curve: the difference of two is the longer operand of a multiplier.
 pub const COUNT_BITS: u32 = LONG_BITS - 1;

@@ -4,8 +4,8 @@ use golden::dead_taxels::DeadTaxels;
 use golden::design::Design;
 use serde::Serialize;
 
-use super::format::{Format, largest, pow2, round_shift};
 use crate::cores::SHORT_BITS;
+use crate::format::{Format, largest, pow2, round_shift};
 
 /// Width of a weight: the shorter operand of a multiplier.
 pub const WEIGHT_BITS: u32 = SHORT_BITS;

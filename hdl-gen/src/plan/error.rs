@@ -5,11 +5,11 @@ use golden::matrices::MatrixError;
 use thiserror::Error;
 
 /// Fewest steps of a force format that a taxel's force at full scale must span.
-pub(super) const FEWEST_FORCE_STEPS: u32 = 64;
+pub(crate) const FEWEST_FORCE_STEPS: u32 = 64;
 
 /// The roundings of a frame may add at most this part of a taxel's force at full scale to it, if all of them add up;
 /// as they come they make less than a tenth of that.
-pub(super) const MOST_ROUNDING: f64 = 4.0;
+pub(crate) const MOST_ROUNDING: f64 = 4.0;
 
 /// Why a checked design has no hardware plan.
 #[derive(Debug, Error)]

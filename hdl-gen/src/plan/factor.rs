@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::format::{largest, pow2};
 use crate::cores::SHORT_BITS;
+use crate::format::{largest, pow2};
 
 /// Width of a factor, which is not negative: the shorter operand of a multiplier.
 const FACTOR_BITS: u32 = SHORT_BITS - 1;

@@ -1,8 +1,8 @@
 //! Gains in fixed point: a multiplier's shorter operand, an exponent, and what both make of a count.
 
-use super::format::{Format, largest, pow2, round_shift};
 use crate::cores::float_to_fixed::Converted;
 use crate::cores::{LONG_BITS, SHORT_BITS};
+use crate::format::{Format, largest, pow2, round_shift};
 
 /// Width of a gain's mantissa: the shorter operand of a multiplier.
 pub const GAIN_BITS: u32 = SHORT_BITS;

@@ -1,7 +1,7 @@
 //! Layout of the PEs' operand memories: which vector stands where.
 
-use super::memory::memory;
 use super::product::{Product, Vector};
+use crate::resources::memory::memory;
 
 /// Where a vector stands in every PE's operand memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use golden::parity::{COMPONENTS, mirror, swapped};
 use nalgebra_sparse::CsrMatrix;
 
 use super::PlanError;
-use super::format::{ACCUMULATOR_LIMIT, Factors, Format, largest, pow2};
+use crate::format::{ACCUMULATOR_LIMIT, Factors, Format, largest, pow2};
 
 /// As [`QuantisedMatrix::new`] takes it where the matrix alone decides; its reciprocal is still a normal f64.
 pub const ANY_LSB: i32 = -900;

@@ -3,7 +3,6 @@
 //! Everything else is derived from it: the integer model interprets it, the emitter prints it, the report
 //! describes it. Nothing here knows Verilog.
 
-mod build;
 pub mod calibration;
 pub mod counts;
 pub mod creep;
@@ -11,29 +10,24 @@ pub mod crosstalk;
 pub mod curve;
 mod curve_format;
 pub mod dead;
-mod durations;
 pub mod energy;
 mod error;
 pub mod factor;
 pub mod filtered;
-pub mod format;
 pub mod gain;
 pub mod layout;
 pub mod luts;
 pub mod matrix;
-pub mod memory;
 mod partition;
 pub mod passes;
 pub mod pe;
 pub mod product;
 pub mod quantise;
-pub mod resources;
 pub mod savings;
 pub mod schedule;
 pub mod smoothing;
 pub mod standard_error;
 pub mod streams;
-mod target_search;
 pub mod vector_formats;
 pub mod words;
 
@@ -43,6 +37,8 @@ use golden::parity::{COMPONENTS, Orbits};
 use serde::Serialize;
 
 use crate::estimators::EstimatorPlan;
+use crate::format::Factors;
+use crate::resources::Resources;
 use crate::timing::Timeline;
 use calibration::CalibrationPlan;
 use counts::CountsPlan;
@@ -50,11 +46,10 @@ use creep::CreepPlan;
 use crosstalk::CrosstalkPlan;
 use dead::DeadPlan;
 pub use error::PlanError;
-use format::Factors;
+pub(crate) use error::{FEWEST_FORCE_STEPS, MOST_ROUNDING};
 use layout::OperandLayout;
 use matrix::QuantisedMatrix;
 use product::{Block, Product};
-use resources::Resources;
 use schedule::Schedule;
 use smoothing::SmoothingPlan;
 use standard_error::StandardErrorPlan;
@@ -70,7 +65,7 @@ pub struct Thresholds {
     /// A frame with a smaller `sum |b|` has no contact.
     pub contact: i64,
     /// Friction at which a frame slips, and at which it still does if the one before did, with
-    /// [`format::FRICTION_FRACTION`] fraction bits.
+    /// [`crate::format::FRICTION_FRACTION`] fraction bits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slip: Option<[i64; 2]>,
     /// The standard error, if it was fitted.
@@ -217,7 +212,7 @@ impl Plan {
     }
 }
 
-fn channels(design: &Design) -> usize {
+pub(crate) fn channels(design: &Design) -> usize {
     match design.algorithm.plan {
         PlanKind::Paper => 1,
         PlanKind::Reduced => COMPONENTS,
@@ -228,7 +223,7 @@ fn orbits(design: &Design) -> Orbits {
     Orbits::new(design.sensor.columns, design.sensor.rows)
 }
 
-fn elements(design: &Design) -> usize {
+pub(crate) fn elements(design: &Design) -> usize {
     match design.algorithm.plan {
         PlanKind::Paper => design.sensor.taxels(),
         PlanKind::Reduced => orbits(design).count(),

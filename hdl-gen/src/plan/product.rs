@@ -7,8 +7,8 @@ use golden::parity::{COMPONENTS, swapped};
 pub use golden::products::{Coefficients, Epilogue, Step, Vector};
 use serde::Serialize;
 
-use super::format::round_shift;
 use super::matrix::{Entry, QuantisedMatrix};
+use crate::format::{FEWEST_ELEMENTS, round_shift};
 use crate::timing::latency::{TAKE_TO_BUS, WRITE_TO_ISSUE, bus_to_taxels, bus_to_write, taxels_to_write};
 
 /// What becomes of a result, as the ROM of write-back slots and the collector (`sptfra_spmv_collector`) have it.
@@ -79,8 +79,6 @@ pub const SELECT_MU_X: i32 = 1;
 pub const SELECT_MU_Y: i32 = 2;
 /// Rows of the sums in front of `K0 y+`, see [`sum_row`].
 pub const SUM_ROWS: usize = 7;
-/// Elements of a vector, and rows of sums, for which the modules have room at least.
-pub const FEWEST_ELEMENTS: usize = 8;
 const _: () = assert!(SUM_ROWS <= FEWEST_ELEMENTS);
 /// The row of what `|w|` takes from `F_z`, `T_x` and `T_y` for q = 0, each in its [`sum_channel`].
 pub const SHARE_ROW: usize = 3;

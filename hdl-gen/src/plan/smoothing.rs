@@ -63,7 +63,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::plan::format::largest;
+    use crate::format::largest;
 
     const TAXELS: usize = 4;
 

@@ -4,8 +4,8 @@ use golden::design::{Algorithm, Design};
 use golden::estimators::{BORDER, ERROR_FRACTION, error_log};
 use serde::Serialize;
 
-use super::format::{largest, pow2};
 use crate::estimators::Contact;
+use crate::format::{largest, pow2};
 use crate::parameters::Parameters;
 
 /// Fraction bits of an error over `|F_z|`.
@@ -36,7 +36,7 @@ pub struct StandardErrorPlan {
 
 impl StandardErrorPlan {
     /// Of a design whose standard error was fitted.
-    pub(super) fn of(design: &Design) -> Option<Self> {
+    pub(crate) fn of(design: &Design) -> Option<Self> {
         let Algorithm { standard_error, max_standard_error, .. } = &design.algorithm;
         let fixed = |value: f64, fraction: u32, bits: u32| {
             ((value * pow2(fraction as i32)).round() as i64).min((1 << bits) - 1)

@@ -4,7 +4,7 @@ use golden::products::Vector;
 use golden::sensor::Sensor;
 use serde::Serialize;
 
-use super::format::{FRICTION_FRACTION, Format, pow2};
+use crate::format::{FRICTION_FRACTION, Format, pow2};
 
 /// Bits by which four taxels' sum is wider than a taxel's value.
 pub const FOLD_BITS: u32 = 2;

@@ -4,7 +4,7 @@ use golden::design::Design;
 use golden::matrices::MatrixName;
 use golden::solver::Solver;
 use hdl_gen::cores::ACCUMULATOR_BITS;
-use hdl_gen::plan::format::{Format, MOST_SHIFT, largest, pow2, round_shift};
+use hdl_gen::format::{Format, MOST_SHIFT, largest, pow2, round_shift};
 use hdl_gen::plan::product::{Epilogue, Vector};
 use hdl_gen::plan::{Plan, PlanError};
 use proptest::prelude::*;

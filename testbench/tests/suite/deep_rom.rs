@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use hdl_gen::plan::memory::{BANK, banks, memory};
+use hdl_gen::resources::memory::{BANK, banks, memory};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tempfile::TempDir;

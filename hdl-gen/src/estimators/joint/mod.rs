@@ -17,11 +17,11 @@ use serde_json::{Value, json};
 
 use super::{Cells, Config, Estimate, EstimatorBlock, Inputs, Metadata, WEIGHT_BITS};
 use crate::cores::{LONG_BITS, SHORT_BITS};
+use crate::format::FEWEST_ELEMENTS;
+use crate::format::{FRICTION_FRACTION, Factors, pow2};
 use crate::parameters::Parameters;
-use crate::plan::format::{FRICTION_FRACTION, Factors, pow2};
-use crate::plan::memory::memory;
-use crate::plan::product::FEWEST_ELEMENTS;
-use crate::plan::resources::BlockCost;
+use crate::resources::BlockCost;
+use crate::resources::memory::memory;
 use crate::timing::durations::Stage;
 pub use network::{INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS};
 pub use search::SearchPlan;

@@ -8,7 +8,7 @@ use golden::parity::{COMPONENTS, sign};
 use serde::Serialize;
 
 use crate::estimators::block::WEIGHT_BITS;
-use crate::plan::format::{FRICTION_FRACTION, largest, pow2, round_shift};
+use crate::format::{FRICTION_FRACTION, largest, pow2, round_shift};
 
 /// Fraction bits of an input.
 pub const INPUT_FRACTION: u32 = 19;

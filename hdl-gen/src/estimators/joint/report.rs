@@ -5,7 +5,7 @@ use golden::kernel::gain;
 use golden::parity::COMPONENTS;
 
 use super::{JointPlan, SearchPlan, timing};
-use crate::plan::format::{MANY_LANES, short};
+use crate::format::{MANY_LANES, short};
 
 /// Share by which the gain may differ from what the kernel lacks under a wide contact.
 const STALE_GAIN: f64 = 0.1;

@@ -7,7 +7,7 @@ use golden::sensor::Sensor;
 use serde::Serialize;
 
 use crate::estimators::Contact;
-use crate::plan::format::{MANY_LANES, largest, round_shift};
+use crate::format::{MANY_LANES, largest, round_shift};
 use crate::timing::latency;
 
 /// The grid.

@@ -3,7 +3,7 @@
 use super::super::Inputs;
 use super::{CENTROID_FRACTION, PITCH_FRACTION};
 use crate::cores::divider;
-use crate::plan::format::round_shift;
+use crate::format::round_shift;
 
 /// The direction of push of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

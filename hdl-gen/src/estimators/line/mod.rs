@@ -11,9 +11,9 @@ use golden::sensor::Sensor;
 use serde_json::json;
 
 use super::{Cells, Config, Estimate, EstimatorBlock, Inputs, Metadata};
+use crate::format::{FRICTION_FRACTION, Factors, MOST_CELLS};
 use crate::parameters::Parameters;
-use crate::plan::format::{FRICTION_FRACTION, Factors, MOST_CELLS};
-use crate::plan::resources::BlockCost;
+use crate::resources::BlockCost;
 use crate::timing::durations::Stage;
 
 /// Fraction bits of a centroid, in units of the taxel index.

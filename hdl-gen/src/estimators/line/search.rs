@@ -6,7 +6,7 @@ use super::super::{Estimate, Inputs};
 use super::direction::Direction;
 use super::{LINE_FRACTION, LINE_SUM_BITS, LinePlan, RECTIFIER_DROP, SEARCH_STEPS};
 use crate::cores::{LONG_BITS, divider};
-use crate::plan::format::{FRICTION_BITS, FRICTION_FRACTION, largest, round_shift};
+use crate::format::{FRICTION_BITS, FRICTION_FRACTION, largest, round_shift};
 
 /// Ratios of this magnitude (4.0) and more make the line meaningless.
 const WILD: u64 = 1 << (LINE_FRACTION + 2);

@@ -6,8 +6,8 @@ use golden::parity::{COMPONENTS, Orbits, butterfly, sign};
 use proptest::prelude::*;
 
 use super::super::{frame, integer, run};
+use crate::format::FRICTION_FRACTION;
 use crate::plan::Plan;
-use crate::plan::format::FRICTION_FRACTION;
 use crate::plan::product::{Coefficients, Epilogue, Product, Vector};
 
 /// The ends of a friction component's range, which is [-2, 2).

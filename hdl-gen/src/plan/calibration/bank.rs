@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{CalibrationPlan, CurveMap, DeadMap, Reading};
-use crate::plan::format::round_shift;
+use crate::format::round_shift;
 use crate::plan::gain::GAIN_BITS;
 
 /// Bits of a gain in its word: mantissa, then the exponent of the counts.

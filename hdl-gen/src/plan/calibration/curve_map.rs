@@ -3,10 +3,10 @@
 use golden::design::Curve;
 use serde::Serialize;
 
+use crate::format::{largest, pow2, round_shift};
 use crate::plan::PlanError;
 use crate::plan::curve::{CurvePlan, MOST_SHIFT, Segment};
 use crate::plan::curve_format::{COUNT_BITS, CurveFormat, MOST_VALUE, SEGMENT_WORDS};
-use crate::plan::format::{largest, pow2, round_shift};
 use crate::plan::gain::GAIN_BITS;
 
 /// Largest magnitude of a number, and of a count's conversion.
@@ -89,7 +89,7 @@ impl CurveMap {
 mod tests {
     use super::{CurveFormat, CurveMap, SLOPE_SHARE};
     use crate::cores::float_to_fixed::Converted;
-    use crate::plan::format::pow2;
+    use crate::format::pow2;
     use golden::design::{Curve, Design};
 
     const DESIGN: &str = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\

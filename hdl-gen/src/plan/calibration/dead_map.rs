@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
+use crate::format::largest;
 use crate::plan::dead::{DeadPlan, MOST_WEIGHT, WEIGHT_BITS};
-use crate::plan::format::largest;
 
 /// A map of dead taxels, with the room that it has in a bank.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

@@ -2,10 +2,10 @@
 
 use golden::parity::COMPONENTS;
 
-use super::super::format::{Format, largest};
 use super::super::matrix::QuantisedMatrix;
 use super::super::product::Product;
 use super::super::vector_formats::FOLD_BITS;
+use crate::format::{Format, largest};
 
 /// An operand: its format, folded if the list is, and that of the taxels' values it is folded from.
 #[derive(Clone, Copy)]

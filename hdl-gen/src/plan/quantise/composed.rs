@@ -10,11 +10,11 @@ use nalgebra::DMatrix;
 
 use crate::cores::LONG_BITS;
 
-use super::super::format::{Format, largest, pow2};
 use super::super::matrix::QuantisedMatrix;
 use super::super::vector_formats::FOLD_BITS;
 use super::LARGEST_FRICTION;
 use super::bounds::Operand;
+use crate::format::{Format, largest, pow2};
 
 /// Factor for the rounding of sums in f64.
 const SLACK: f64 = 1.0 + 1e-9;

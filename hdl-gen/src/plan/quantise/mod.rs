@@ -16,10 +16,10 @@ use golden::products::{Epilogue, Form, ProductList, Source, Step, Vector};
 
 use super::PlanError;
 use super::filtered::Filtered;
-use super::format::{FRICTION_FRACTION, Factors, Format, MOST_SHIFT, largest, round_shift};
 use super::matrix::{ANY_LSB, QuantisedMatrix};
 use super::product::{SELECT_MU_X, SELECT_MU_Y, SELECT_ONE};
 use super::vector_formats::{FOLD_BITS, FoldedFormats, Formats, arm_exponent};
+use crate::format::{FRICTION_FRACTION, Factors, Format, MOST_SHIFT, largest, round_shift};
 use bounds::{Operand, Term};
 
 /// A friction component lies in [-2, 2).

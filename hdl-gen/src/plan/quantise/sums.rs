@@ -5,10 +5,10 @@ use golden::products::RESULTANTS;
 use golden::reduced::ReducedMatrices;
 
 use super::super::PlanError;
-use super::super::format::{Factors, Format, largest, pow2};
 use super::super::matrix::{ANY_LSB, QuantisedMatrix, RealRows};
 use super::super::product::{SHARE_ROW, SUM_ROWS, sum_channel, sum_row};
 use super::bounds::{self, Operand};
+use crate::format::{Factors, Format, largest, pow2};
 
 /// The rows of all sums of `y+` and the weights, and their format. Torques are in units of `2^arm_exponent` N m.
 pub(super) fn quantise(

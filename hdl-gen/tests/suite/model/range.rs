@@ -5,9 +5,9 @@
 use golden::design::{Design, Outputs, PlanKind, Scaling};
 use golden::metrics::field_error;
 use golden::solver::Solver;
+use hdl_gen::format::pow2;
 use hdl_gen::model::{Model, NO_CONTACT, SATURATED};
 use hdl_gen::plan::Plan;
-use hdl_gen::plan::format::pow2;
 use hdl_gen::plan::words::{FORCE, MU, STANDARD_ERROR, SUMMARY_WORDS, TIMESTAMP};
 
 use super::{Contact, frame};

@@ -5,7 +5,7 @@ use golden::parity::COMPONENTS;
 use super::super::super::Inputs;
 use super::super::{CENTRE_HALF, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS};
 use crate::cores::{SHORT_BITS, divider};
-use crate::plan::format::{FRICTION_FRACTION, SUM_BITS, largest, round_shift};
+use crate::format::{FRICTION_FRACTION, SUM_BITS, largest, round_shift};
 
 /// Fraction bits of the contact's centre.
 const CENTRE_FRACTION: u32 = FRICTION_FRACTION;

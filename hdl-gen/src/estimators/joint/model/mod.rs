@@ -6,7 +6,7 @@ mod search;
 
 use super::super::{Estimate, Inputs};
 use super::{CUBIC_FRACTION, FACTOR_FRACTION, JointPlan, LINEAR_FRACTION};
-use crate::plan::format::{FRICTION_BITS, FRICTION_FRACTION, largest, round_shift};
+use crate::format::{FRICTION_BITS, FRICTION_FRACTION, largest, round_shift};
 
 /// Finds the friction of a frame.
 pub fn friction(joint: &JointPlan, inputs: &Inputs) -> Estimate {

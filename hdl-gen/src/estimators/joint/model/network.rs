@@ -3,7 +3,7 @@
 use golden::parity::COMPONENTS;
 
 use super::super::{CORRECTION_LIMIT, NetworkPlan};
-use crate::plan::format::round_shift;
+use crate::format::round_shift;
 
 /// The correction of both friction components for the features by word and component.
 pub fn correction(network: &NetworkPlan, inputs: &[[i64; COMPONENTS]]) -> [i64; 2] {

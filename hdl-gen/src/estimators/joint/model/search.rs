@@ -4,7 +4,7 @@ use super::super::super::Inputs;
 use super::super::SearchPlan;
 use super::super::search::{GRID, Values, WEIGHT_DROP};
 use crate::cores::divider;
-use crate::plan::format::FRICTION_FRACTION;
+use crate::format::FRICTION_FRACTION;
 
 /// The level set's centroid.
 pub struct Centroid {

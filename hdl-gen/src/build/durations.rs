@@ -2,11 +2,11 @@
 
 use golden::design::Optimise;
 
-use super::Plan;
-use super::product::Vector;
-use super::schedule::WriteBackSlot;
-use super::streams::Intake;
 use crate::blocks::bz;
+use crate::plan::Plan;
+use crate::plan::product::Vector;
+use crate::plan::schedule::WriteBackSlot;
+use crate::plan::streams::Intake;
 use crate::timing::buffers::buffers;
 use crate::timing::durations::{Durations, Program};
 use crate::timing::latency::{self, TAKE_TO_BUS};

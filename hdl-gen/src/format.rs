@@ -21,6 +21,9 @@ pub const MOST_CELLS: usize = 32;
 /// cells and multipliers.
 pub const MANY_LANES: usize = 64;
 
+/// Elements of a vector, and rows of sums, for which the modules have room at least.
+pub const FEWEST_ELEMENTS: usize = 8;
+
 /// Most bits that a product drops between accumulator and result. A matrix whose results are so small beside the
 /// others' that it would drop more is stored with fewer bits instead: they would be lost in the rounding.
 pub const MOST_SHIFT: u32 = 40;

@@ -1,35 +1,37 @@
 //! From a checked design to its plan on so many lanes.
 
+mod durations;
+mod target_search;
+
 use golden::design::{Design, Outputs, PlanKind, Slip};
 use golden::matrices::Matrices;
 
-use super::calibration::CalibrationPlan;
-use super::counts::CountsPlan;
-use super::creep::CreepPlan;
-use super::crosstalk::CrosstalkPlan;
-use super::dead::DeadPlan;
-use super::durations::durations;
-use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
-use super::filtered::Filtered;
-use super::format::{FRICTION_FRACTION, Factors, Format, MANY_LANES, pow2};
-use super::layout::OperandLayout;
-use super::matrix::QuantisedMatrix;
-use super::passes;
-use super::product::Product;
-use super::quantise::{Quantised, quantise, taxel_force_n};
-use super::resources::Resources;
-use super::schedule::Schedule;
-use super::smoothing::SmoothingPlan;
-use super::standard_error::StandardErrorPlan;
-use super::vector_formats::{Formats, arms};
-use super::{Condition, Nnz, Plan, Thresholds, channels, elements};
 use crate::blocks;
 use crate::cores::{DspBlock, LONG_BITS, Multiplier};
 use crate::estimators::{Config, EstimatorPlan};
+use crate::format::{FRICTION_FRACTION, Factors, Format, MANY_LANES, pow2};
+use crate::plan::calibration::CalibrationPlan;
+use crate::plan::counts::CountsPlan;
+use crate::plan::creep::CreepPlan;
+use crate::plan::crosstalk::CrosstalkPlan;
+use crate::plan::dead::DeadPlan;
+use crate::plan::filtered::Filtered;
+use crate::plan::layout::OperandLayout;
+use crate::plan::matrix::QuantisedMatrix;
+use crate::plan::passes;
+use crate::plan::product::Product;
+use crate::plan::quantise::{Quantised, quantise, taxel_force_n};
+use crate::plan::schedule::Schedule;
+use crate::plan::smoothing::SmoothingPlan;
+use crate::plan::standard_error::StandardErrorPlan;
+use crate::plan::vector_formats::{Formats, arms};
+use crate::plan::{Condition, FEWEST_FORCE_STEPS, MOST_ROUNDING, Nnz, Plan, PlanError, Thresholds, channels, elements};
+use crate::resources::Resources;
 use crate::timing::{Timeline, control};
+use durations::durations;
 
 /// Words that do not fit one multiplier a lane have hardware where two make one product.
-pub(super) fn check_widths(design: &Design) -> Result<(), PlanError> {
+fn check_widths(design: &Design) -> Result<(), PlanError> {
     let factors = Factors::of(design);
     let data = |why, cure| Err(PlanError::Wide { key: "data_bits", bits: factors.data_bits, why, cure });
     if factors.is_wide() && Multiplier::of_part(&design.hardware.part) == Multiplier::Split {
@@ -53,7 +55,7 @@ pub(super) fn check_widths(design: &Design) -> Result<(), PlanError> {
 }
 
 /// What does not depend on the number of lanes.
-pub(super) struct SharedPlan {
+struct SharedPlan {
     condition: Condition,
     nnz: Nnz,
     matrices: Vec<QuantisedMatrix>,
@@ -66,7 +68,7 @@ pub(super) struct SharedPlan {
 }
 
 impl SharedPlan {
-    pub(super) fn new(design: &Design) -> Result<Self, PlanError> {
+    fn new(design: &Design) -> Result<Self, PlanError> {
         let hardware = &design.hardware;
         let matrices = Matrices::of(design)?;
         // What a frame can bring of it, so that a reading of just the full scale reaches the bound.
@@ -87,7 +89,7 @@ impl SharedPlan {
     }
 
     /// Lays the plan out on the lanes of `design`, which differs from the one it is of in nothing else.
-    pub(super) fn on_lanes(&self, design: &Design) -> Plan {
+    fn on_lanes(&self, design: &Design) -> Plan {
         let hardware = &design.hardware;
         let (elements, channels) = (elements(design), channels(design));
         let schedule =

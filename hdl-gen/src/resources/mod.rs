@@ -1,9 +1,11 @@
 //! Predicted resources: multipliers and block memories of a device of AMD's, as the blocks state them.
 
+pub mod memory;
+
 use serde::Serialize;
 
-use super::memory::Memory;
 use crate::cores::DspBlock;
+use memory::Memory;
 
 /// What a block of the hardware takes.
 #[derive(Clone, Debug, PartialEq)]

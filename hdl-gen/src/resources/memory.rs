@@ -23,7 +23,7 @@ const MOST_BANKS: usize = 64;
 pub struct Memory {
     /// What it holds.
     pub name: &'static str,
-    /// The block that it is in: see [`super::resources::BlockCost`].
+    /// The block that it is in: see [`super::BlockCost`].
     pub block: &'static str,
     /// How many of them.
     pub count: usize,

@@ -3,9 +3,9 @@
 use golden::design::{Design, Estimator, MAX_LANES, Optimise, Outputs, PlanKind, STREAM_BITS};
 use golden::parity::COMPONENTS;
 
-use super::build::{SharedPlan, check_widths};
-use super::{Plan, PlanError};
+use super::{SharedPlan, check_widths};
 use crate::estimators;
+use crate::plan::{Plan, PlanError};
 
 impl Plan {
     /// Plans the hardware of `design`.
