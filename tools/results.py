@@ -3,7 +3,7 @@
 """Measured figures as CSV: results.py bench|corner-cases FIGURES.json [--out results]
 
 FIGURES.json is what the measuring command prints. Each file keeps the lines above its header that say what
-its rows are; a new file has none yet.
+its rows are; a new file has none yet. The line of its designs, with their hashes, is made anew.
 """
 
 import argparse
@@ -24,10 +24,22 @@ GROUPS = {
     "frame": "Frames without an answer",
 }  # fmt: skip
 ESTIMATORS = {"line": "line", "joint": "grid"}
+# What of the figures each file shows, of those that are of designs.
+OF_DESIGNS = {
+    "solver-speed.csv": "solver", "generation-time.csv": "generation", "simulation-speed.csv": "simulation",
+    "filters.csv": "filters", "cells.csv": "cells",
+}  # fmt: skip
+DESIGNS = "# designs: "
 
 
 def stem(path: str) -> str:
     return Path(path.strip("`")).stem if path.strip("`").endswith(".toml") else path
+
+
+def designs(rows: list[dict]) -> list[str]:
+    """The line that names designs and hashes, as other measured tables have it."""
+    hashes = {stem(row.get("file", row["design"])): row["hash"] for row in rows if row["hash"]}
+    return [DESIGNS + ", ".join(f"{name} {of}" for name, of in hashes.items())] if hashes else []
 
 
 def shown(value: float | None, digits: int) -> str:
@@ -145,8 +157,10 @@ def main() -> None:
     for name, (header, rows) in (bench if given.what == "bench" else corner_cases)(figures).items():
         place = given.out / name
         old = place.read_text(encoding="utf-8").splitlines() if place.exists() else []
+        about = [line for line in old if line.startswith("#") and not line.startswith(DESIGNS)]
+        about += designs(figures[OF_DESIGNS[name]]) if name in OF_DESIGNS else []
         with open(place, "w", encoding="utf-8", newline="") as file:
-            file.writelines(f"{line}\n" for line in old if line.startswith("#"))
+            file.writelines(f"{line}\n" for line in about)
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(header)
             writer.writerows(rows)

@@ -56,6 +56,8 @@ pub struct Cells {
     pub file: String,
     /// The design's name.
     pub design: String,
+    /// Its hash.
+    pub hash: String,
     /// Block by block.
     pub blocks: Vec<Block>,
     /// All together.
@@ -73,6 +75,7 @@ pub fn read(path: &Path) -> Result<Cells, BenchError> {
 #[derive(Deserialize)]
 struct Metadata {
     top: String,
+    design_hash: String,
     predicted: MetadataPrediction,
 }
 
@@ -108,7 +111,7 @@ struct Module {
 /// [`BenchError::Read`] and [`BenchError::Json`]; [`BenchError::NoModule`] if the files are of different designs; those of
 /// [`levels::longest`].
 pub fn count(file: &Path, metadata: &Path, statistics: &Path, netlist: Option<&Path>) -> Result<Cells, BenchError> {
-    let Metadata { top, predicted } = read_json(metadata)?;
+    let Metadata { top, design_hash: hash, predicted } = read_json(metadata)?;
     let place =
         |module: &str| predicted.blocks.iter().position(|block| block.modules.iter().any(|name| name == module));
     let rest = predicted.blocks.len();
@@ -142,7 +145,13 @@ pub fn count(file: &Path, metadata: &Path, statistics: &Path, netlist: Option<&P
     let predicted = Expected { dsp: predicted.dsp, bram36: predicted.bram36 };
     let file = file.display().to_string();
     let longest = blocks.iter().filter_map(|block| block.longest.clone()).max_by_key(|way| way.levels);
-    Ok(Cells { file, design: top, blocks, total: Block { name: "all".to_owned(), yosys: total, predicted, longest } })
+    Ok(Cells {
+        file,
+        design: top,
+        hash,
+        blocks,
+        total: Block { name: "all".to_owned(), yosys: total, predicted, longest },
+    })
 }
 
 /// Sums Yosys' `stat -json` of a synthesis that was not flattened by the places of its modules. What has no place counts
@@ -270,7 +279,7 @@ impl Cells {
 mod tests {
     use super::*;
 
-    const METADATA: &str = r#"{ "top": "t", "predicted": { "dsp": 3, "bram36": 1.0, "blocks": [
+    const METADATA: &str = r#"{ "top": "t", "design_hash": "0", "predicted": { "dsp": 3, "bram36": 1.0, "blocks": [
         { "name": "lanes", "modules": ["sptfra_spmv_array"], "dsp": 2, "bram36": 1.0 },
         { "name": "field", "modules": ["sptfra_field"], "dsp": 1, "bram36": 0.0 } ] } }"#;
     const STATISTICS: &str = r#"{ "modules": {

@@ -19,6 +19,8 @@ const F2_P: [f64; 4] = [50.0, 10.0, 1.0, 0.1];
 pub struct Filtered {
     /// The design file that the filter is tried on.
     pub design: String,
+    /// The hash of that design.
+    pub hash: String,
     /// The filter as the design file writes it.
     pub filter: String,
     /// Multiply-accumulates of a frame.
@@ -51,6 +53,7 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Filtered
             Ok(frames.iter().map(|frame| solver.solve(frame)).collect::<Result<_, _>>()?)
         };
         let reference = solve(design)?;
+        let hash = design.hash();
         for (filter, text) in filters(design.sensor.taxels()) {
             let mut design = design.clone();
             design.algorithm.filter = filter;
@@ -61,6 +64,7 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Filtered
             };
             rows.push(Filtered {
                 design: path.clone(),
+                hash: hash.clone(),
                 filter: text,
                 macs: plan.macs(),
                 latency: plan.timeline.latency_cycles,

@@ -25,6 +25,8 @@ const MAT_FROM: usize = 32;
 pub struct Generation {
     /// What is generated.
     pub design: String,
+    /// Hash of a design that is a file.
+    pub hash: Option<String>,
     /// Taxels.
     pub taxels: usize,
     /// Median seconds from the checked design to its plan.
@@ -41,16 +43,17 @@ pub struct Generation {
 pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Generation>, BenchError> {
     let mut designs = Vec::new();
     for side in SIDES.into_iter().filter(|&side| side <= scope.largest) {
-        designs
-            .push((format!("{side} × {side}, reduced, no filter, {LANES} lanes"), square(Kind::Reduced, side, LANES)?));
+        let name = format!("{side} × {side}, reduced, no filter, {LANES} lanes");
+        designs.push((name, None, square(Kind::Reduced, side, LANES)?));
     }
-    designs.extend(scope.designs.iter().map(|(path, design)| (format!("`{path}`"), design.clone())));
+    designs
+        .extend(scope.designs.iter().map(|(path, design)| (format!("`{path}`"), Some(design.hash()), design.clone())));
     // Last: what it leaves allocated would count as memory of the next.
     if scope.largest >= MAT_FROM {
-        designs.push(("64 × 64, reduced, cell kernel, F2 with p = 1, 64 lanes".to_owned(), mat()?));
+        designs.push(("64 × 64, reduced, cell kernel, F2 with p = 1, 64 lanes".to_owned(), None, mat()?));
     }
     let mut rows = Vec::new();
-    for (name, design) in designs {
+    for (name, hash, design) in designs {
         progress.stage(format!("generating {name}"));
         let (mut plans, mut emits, mut bytes) = (Vec::new(), Vec::new(), 0);
         forget_peak_memory();
@@ -65,7 +68,7 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Generati
         }
         let taxels = design.sensor.taxels();
         let (plan_s, emit_s, memory) = (median(plans), median(emits), peak_memory());
-        rows.push(Generation { design: name, taxels, plan_s, emit_s, bytes, memory });
+        rows.push(Generation { design: name, hash, taxels, plan_s, emit_s, bytes, memory });
     }
     Ok(rows)
 }

@@ -25,6 +25,8 @@ const SEED: u32 = 1;
 pub struct Rate {
     /// The design file.
     pub design: String,
+    /// The design's hash.
+    pub hash: String,
     /// Its lanes.
     pub lanes: usize,
     /// Frames in a repetition.
@@ -68,6 +70,7 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Rate>, B
         let cycles_per_second = median(rates);
         rows.push(Rate {
             design: path.clone(),
+            hash: design.hash(),
             lanes: design.hardware.lanes,
             frames,
             cycles_per_second,

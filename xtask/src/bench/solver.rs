@@ -14,6 +14,8 @@ pub struct SolverRate {
     pub file: String,
     /// The design's name.
     pub design: String,
+    /// Its hash.
+    pub hash: String,
     /// Its plan.
     pub plan: PlanKind,
     /// Its taxels.

@@ -4,16 +4,16 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use golden::design::{Design, PlanKind};
+use golden::design::Design;
 use golden::progress::Progress;
 use golden::solver::{PIECE, Past, Solution, Solver, SolverError, Status};
 use golden::table::Table;
 use nalgebra::DVector;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use serde::Serialize;
 use sptfra::arguments::design_file;
 use sptfra::message::{self, json_or};
+use xtask::bench::solver::{SolverRate, Speed};
 
 /// Different frames, solved in turn.
 const FRAMES: usize = 128;
@@ -39,31 +39,6 @@ pub struct Args {
     json: bool,
 }
 
-#[derive(Serialize)]
-struct Report {
-    /// The design file, as it was named.
-    file: String,
-    design: String,
-    plan: PlanKind,
-    taxels: usize,
-    /// Seconds for matrices and filter.
-    setup_s: f64,
-    repetitions: usize,
-    one_by_one: Speed,
-    in_batches: Speed,
-    cores: usize,
-    on_all_cores: Speed,
-}
-
-#[derive(Serialize)]
-struct Speed {
-    frames_per_second: f64,
-    /// Median of the repetitions.
-    us_per_frame: f64,
-    /// The fastest and the slowest repetition.
-    us_per_frame_range: [f64; 2],
-}
-
 /// Measures each of the designs.
 pub fn run(args: &Args) -> message::Result {
     let Args { designs, json } = args;
@@ -75,11 +50,11 @@ pub fn run(args: &Args) -> message::Result {
     Ok(json_or(&reports, *json, |reports| text(reports))?.into())
 }
 
-fn text(reports: &[Report]) -> String {
+fn text(reports: &[SolverRate]) -> String {
     let mut table =
         Table::new(["design", "plan", "taxels", "setup s", "one by one", "us", "in batches", "us", "all cores", "us"]);
     for report in reports {
-        let Report { design, plan, taxels, setup_s, one_by_one, in_batches, on_all_cores, .. } = report;
+        let SolverRate { design, plan, taxels, setup_s, one_by_one, in_batches, on_all_cores, .. } = report;
         let mut row = vec![design.clone(), plan.to_string(), taxels.to_string(), format!("{setup_s:.2}")];
         for speed in [one_by_one, in_batches, on_all_cores] {
             row.extend([format!("{:.0}", speed.frames_per_second), format!("{:.1}", speed.us_per_frame)]);
@@ -93,7 +68,7 @@ fn text(reports: &[Report]) -> String {
     )
 }
 
-fn measure(path: &Path) -> Result<Report, Box<dyn Error>> {
+fn measure(path: &Path) -> Result<SolverRate, Box<dyn Error>> {
     let design = Design::load(path)?;
     let start = Instant::now();
     let solver = Solver::new(&design)?;
@@ -115,11 +90,20 @@ fn measure(path: &Path) -> Result<Report, Box<dyn Error>> {
             place[index] = solution.resultant[2];
         })
     })?;
-    let plan = design.algorithm.plan;
-    let taxels = solver.taxels();
-    let file = path.display().to_string();
-    let (design, repetitions) = (design.name, REPETITIONS);
-    Ok(Report { file, design, plan, taxels, setup_s, repetitions, one_by_one, in_batches, cores, on_all_cores })
+    Ok(SolverRate {
+        file: path.display().to_string(),
+        hash: design.hash(),
+        plan: design.algorithm.plan,
+        taxels: solver.taxels(),
+        design: design.name,
+        setup_s,
+        repetitions: REPETITIONS,
+        one_by_one,
+        in_batches,
+        cores,
+        on_all_cores,
+        numpy_frames_per_second: None,
+    })
 }
 
 /// Times a function that solves so many frames.

@@ -4,14 +4,15 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use golden::design::Design;
 use serde_json::Value;
 
-const SOLVER: &str = r#"[{ "file": "slow.toml", "design": "slow", "plan": "paper", "taxels": 12, "setup_s": 0.1, "repetitions": 7,
+const SOLVER: &str = r#"[{ "file": "slow.toml", "design": "slow", "hash": "01", "plan": "paper", "taxels": 12, "setup_s": 0.1, "repetitions": 7,
     "one_by_one": { "frames_per_second": 1000.0, "us_per_frame": 1000.0, "us_per_frame_range": [900.0, 1100.0] },
     "in_batches": { "frames_per_second": 2000.0, "us_per_frame": 500.0, "us_per_frame_range": [400.0, 600.0] },
     "cores": 2, "on_all_cores": { "frames_per_second": 3800.0, "us_per_frame": 263.0, "us_per_frame_range": [250.0, 300.0] },
     "numpy_frames_per_second": 800.0 }]"#;
-const CELLS: &str = r#"{ "file": "counted.toml", "design": "counted",
+const CELLS: &str = r#"{ "file": "designs/counted.toml", "design": "counted", "hash": "02",
     "blocks": [{ "name": "lanes", "yosys": { "dsp": 4, "bram36": 2.5, "lut": 7, "ff": 8 },
                  "predicted": { "dsp": 4, "bram36": 2.0 } }],
     "total": { "name": "all", "yosys": { "dsp": 4, "bram36": 2.5, "lut": 7, "ff": 8 },
@@ -46,6 +47,8 @@ fn a_tiny_bench_has_its_tables_and_exact_cycles() {
     assert_eq!(figures["generation"].as_array().map(Vec::len), Some(2));
 
     let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools/results.py");
+    let about = "# Cells.\n# designs: other 00\ndesign,block\n";
+    fs::write(folder.path().join("cells.csv"), about).expect("written");
     let mut python = Command::new("python3");
     python.arg(results).args(["bench", &json, "--out"]).arg(folder.path());
     assert!(python.status().expect("starts").success());
@@ -58,6 +61,19 @@ fn a_tiny_bench_has_its_tables_and_exact_cycles() {
     ] {
         let table = fs::read_to_string(folder.path().join(file)).expect(file);
         assert!(table.lines().any(|line| line.starts_with(row)), "{file}: {table}");
+    }
+    let own = Design::load(Path::new(&small())).expect("a design").hash();
+    for (file, lines) in [
+        ("cells.csv", "# Cells.\n# designs: counted 02\ndesign,".to_owned()),
+        ("solver-speed.csv", "# designs: slow 01\ndesign,".to_owned()),
+        ("simulation-speed.csv", format!("# designs: small {own}\ndesign,")),
+        ("generation-time.csv", format!("# designs: small {own}\ndesign,")),
+        ("filters.csv", format!("# designs: small {own}\ndesign,")),
+        // Squares that are no files.
+        ("cycles.csv", "plan,".to_owned()),
+    ] {
+        let table = fs::read_to_string(folder.path().join(file)).expect(file);
+        assert!(table.starts_with(&lines), "{file}: {table}");
     }
     let cycles = fs::read_to_string(folder.path().join("cycles.csv")).expect("cycles.csv");
     assert_eq!(cycles.lines().filter(|line| line.ends_with(",yes")).count(), 1, "{cycles}");

@@ -36,7 +36,7 @@ module small (input wire clock, input wire [26:0] x, output reg [44:0] y);
 endmodule
 ";
 
-const METADATA: &str = r#"{ "top": "small", "predicted": { "dsp": 1, "bram36": 0.0, "blocks": [
+const METADATA: &str = r#"{ "top": "small", "design_hash": "0", "predicted": { "dsp": 1, "bram36": 0.0, "blocks": [
     { "name": "Bz", "modules": ["sptfra_bz", "sptfra_fold"], "dsp": 0, "bram36": 0.0 },
     { "name": "We", "modules": ["sptfra_we"], "dsp": 1, "bram36": 0.0 } ] } }"#;
 
