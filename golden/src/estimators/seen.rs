@@ -7,7 +7,7 @@ use crate::status::Status;
 pub const RANGE: f64 = 2.0;
 
 /// What the contact analysis finds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contact {
     /// Sum of |b| over all taxels in pascals.
     pub stress_sum: f64,

@@ -2,8 +2,9 @@
 
 use nalgebra::DVector;
 
-use super::{Solution, Solver, Status, Workspace, quotient};
+use super::{Solution, Solver, Status, quotient};
 use crate::contacts::{ContactForces, Found};
+use crate::estimators::Contact;
 use crate::matrices::{Matrices, MatrixName};
 use crate::parity::COMPONENTS;
 
@@ -19,26 +20,47 @@ pub const CHANGE: f64 = 1.25;
 /// See [`CHANGE`].
 pub const REACH: f64 = 2.0;
 
-/// The contacts of a frame, to be used again for the next one.
+/// Memory for frames of several contacts, to be used again for others.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Separation {
-    found: Found,
+pub(super) struct Separations {
+    /// Of each frame that is to be separated, the first `used`.
+    frames: Vec<Separation>,
+    used: usize,
+    /// The frames that their contacts would cause alone, in pascals, one after the other, and what they have.
+    parts: Vec<(DVector<f64>, Contact)>,
+    /// The solutions of those.
+    alone: Vec<Solution>,
     /// What presses on each taxel, in newtons.
     weight: Vec<f64>,
+    /// The part of a frame that no forces explain.
+    unexplained: DVector<f64>,
+    /// A folded vector, and a folded product.
+    folded: [[Vec<f64>; COMPONENTS]; 2],
+}
+
+/// A frame of several contacts.
+#[derive(Clone, Debug, Default)]
+struct Separation {
+    /// Place of its solution among those of the frames that are solved together.
+    index: usize,
+    /// Bits that each of its contacts has.
+    status: Status,
+    /// Its stress, in pascals.
+    whole: DVector<f64>,
+    found: Found,
     /// Forces `f_x, f_y, f_z` of each taxel that are separated, in newtons without the estimator's gain.
     forces: [Vec<f64>; 3],
     /// `(F_x, F_y)` of each contact in the round before, in newtons.
     before: Vec<[f64; 2]>,
     /// Change of that in the last round, in newtons.
     changed: Vec<f64>,
-    /// The frame that each contact would cause alone, in pascals.
-    frames: Vec<DVector<f64>>,
-    /// The part of the frame that no forces explain.
-    unexplained: DVector<f64>,
-    /// A folded vector, and a folded product.
-    folded: [[Vec<f64>; COMPONENTS]; 2],
-    /// The solution of one contact.
-    alone: Option<Box<Solution>>,
+}
+
+impl Separations {
+    /// Begins with frames that are solved together.
+    pub(super) fn clear(&mut self) {
+        self.used = 0;
+    }
 }
 
 /// Numbers of contacts in a frame.
@@ -46,81 +68,95 @@ pub(super) struct Separation {
 pub(super) struct Counted {
     /// All contacts.
     contacts: usize,
-    /// Those that have a region.
-    regions: usize,
     /// Taxels that the first one touches.
     taxels: usize,
 }
 
-impl Counted {
-    /// Whether the frame has contacts to separate.
-    pub(super) fn has_several(self) -> bool {
-        self.regions > 1
-    }
-}
-
 impl Solver {
     /// Finds the contacts in the stress `b` (Pa) as connected components of the weights `|w|` (N); none for a design that does
-    /// not ask.
+    /// not ask. A frame that has several is noted, to be separated.
     ///
-    /// The hardware counts by the same rule.
-    pub(super) fn count_contacts(&self, b: &DVector<f64>, separation: &mut Separation) -> Counted {
+    /// `solution` is that of the frame as one contact, at `index` among those solved together; `status` the frame's before
+    /// it was solved. The hardware counts by the same rule.
+    pub(super) fn count_contacts(
+        &self,
+        separations: &mut Separations,
+        (b, mut status): (&DVector<f64>, Status),
+        (index, solution): (usize, &mut Solution),
+    ) -> Counted {
         let Some(finder) = &self.finder else { return Counted::default() };
-        let Separation { found, weight, .. } = separation;
+        let Separations { frames, used, weight, .. } = separations;
         let normal = &*self.matrices.folded(MatrixName::C33inv) * b;
         weight.clear();
         weight.extend(normal.iter().map(|force| (-force).max(0.0)));
+        if *used == frames.len() {
+            frames.push(Separation::default());
+        }
+        let separation = &mut frames[*used];
+        let found = &mut separation.found;
         if finder.records() == 0 {
             finder.count(weight, found);
             return Counted { contacts: found.contacts, ..Counted::default() };
         }
         finder.find(weight, found);
         let taxels = found.taxels.first().copied().unwrap_or(0);
-        Counted { contacts: found.contacts, regions: found.taxels.len(), taxels }
+        let counted = Counted { contacts: found.contacts, taxels };
+        if found.taxels.len() > 1 {
+            *used += 1;
+            separation.before.clear();
+            separation.before.resize(found.taxels.len(), [0.0; 2]);
+            separation.changed.clear();
+            separation.whole.clone_from(b);
+            std::mem::swap(&mut separation.forces, &mut solution.field);
+            // Tension is judged of the whole frame, at the friction of all its contacts.
+            if !solution.status.contains(Status::NO_TENSION) {
+                status.remove(Status::NO_TENSION);
+            }
+            solution.reset(status, self.solved_length());
+            (separation.index, separation.status) = (index, ContactForces::bits_of(status));
+        }
+        counted
     }
 
-    /// Finds the forces of each contact, from the frame that it would cause alone, and their sums.
+    /// Finds the forces of each contact of the frames that were noted, from the frame that it would cause alone, and their
+    /// sums.
     ///
-    /// `solution` is that of the frame as one contact, `status` the frame's before it was solved.
-    pub(super) fn solve_contacts(&self, workspace: &mut Workspace, mut status: Status, solution: &mut Solution) {
-        // Tension is judged of the whole frame, at the friction of all its contacts.
-        if !solution.status.contains(Status::NO_TENSION) {
-            status.remove(Status::NO_TENSION);
-        }
-        let nothing = || Box::new(Solution::zeros(Status::default(), 0));
-        let mut alone = workspace.separation.alone.take().unwrap_or_else(nothing);
-        let whole = workspace.b.clone();
-        let contacts = workspace.separation.found.taxels.len();
-        std::mem::swap(&mut workspace.separation.forces, &mut solution.field);
-        solution.reset(status, self.solved_length());
-        let status = ContactForces::bits_of(status);
-        workspace.separation.before.clear();
-        workspace.separation.before.resize(contacts, [0.0; 2]);
-        workspace.separation.changed.clear();
+    /// `solve` solves frames of one contact each.
+    pub(super) fn separate(
+        &self,
+        separations: &mut Separations,
+        solutions: &mut [Solution],
+        mut solve: impl FnMut(&[(DVector<f64>, Contact)], &mut [Solution]),
+    ) {
         for round in 1..=ROUNDS {
-            self.find_frames(&mut workspace.separation, &whole);
-            workspace.separation.forces.iter_mut().for_each(|component| component.fill(0.0));
-            for number in 0..contacts {
-                workspace.b.copy_from(&workspace.separation.frames[number]);
-                let contact = self.reader.analyse(&workspace.b);
-                alone.reset(status, self.solved_length());
-                self.solve_alone(workspace, contact, &mut alone);
-                let all = workspace.separation.forces.iter_mut().flatten();
-                all.zip(alone.field.iter().flatten()).for_each(|(all, force)| *all += force);
-                let [x, y, _] = alone.resultant;
-                let [before_x, before_y] = std::mem::replace(&mut workspace.separation.before[number], [x, y]);
-                if round == ROUNDS {
-                    workspace.separation.changed.push((x - before_x).hypot(y - before_y));
-                    solution.records.push(self.record(workspace.separation.found.taxels[number], &alone));
-                    solution.add(&alone);
+            let contacts = self.find_parts(separations);
+            solve(&separations.parts[..contacts], &mut separations.alone[..contacts]);
+            let mut alone = separations.alone.iter();
+            for separation in &mut separations.frames[..separations.used] {
+                let Separation { index, found, forces, before, changed, .. } = separation;
+                let solution = &mut solutions[*index];
+                for component in &mut *forces {
+                    component.fill(0.0);
+                }
+                for ((&taxels, before), alone) in found.taxels.iter().zip(before).zip(alone.by_ref()) {
+                    let all = forces.iter_mut().flatten();
+                    all.zip(alone.field.iter().flatten()).for_each(|(all, force)| *all += force);
+                    let [x, y, _] = alone.resultant;
+                    let [before_x, before_y] = std::mem::replace(before, [x, y]);
+                    if round == ROUNDS {
+                        changed.push((x - before_x).hypot(y - before_y));
+                        solution.records.push(self.record(taxels, alone));
+                        solution.add(alone);
+                    }
                 }
             }
         }
-        workspace.b = whole;
-        workspace.separation.alone = Some(alone);
-        self.widen_standard_errors(&workspace.separation.changed, solution);
-        solution.sum_up();
-        ContactForces::largest_first(&mut solution.records);
+        for Separation { index, changed, .. } in &separations.frames[..separations.used] {
+            let solution = &mut solutions[*index];
+            self.widen_standard_errors(changed, solution);
+            solution.sum_up();
+            ContactForces::largest_first(&mut solution.records);
+        }
     }
 
     /// Adds to the standard error of each contact that due to the other ones, see [`CHANGE`]: the estimator sees one at a time.
@@ -151,40 +187,52 @@ impl Solver {
         solution.standard_error = solution.records.iter().fold(0.0, |all, contact| contact.standard_error.hypot(all));
     }
 
-    /// Finds the frame that each contact would cause alone: the stress of the forces in its region, and the part of the frame
-    /// there that no forces explain.
+    /// Finds the frames that the contacts of all frames would cause alone: the stress of the forces in their regions, and the
+    /// part of the frame there that no forces explain. Returns their number.
     ///
     /// They add up to the whole frame. Of a sensor that reads no tension their tension is 0.
-    fn find_frames(&self, separation: &mut Separation, whole: &DVector<f64>) {
-        let Separation { found, forces, frames, unexplained, folded: [folded, product], .. } = separation;
+    fn find_parts(&self, separations: &mut Separations) -> usize {
+        let Separations { frames, used, parts, alone, unexplained, folded: [folded, product], .. } = separations;
         let Matrices { c31, c32, c33, .. } = &self.matrices;
         let orbits = self.matrices.orbits();
-        frames.resize_with(found.taxels.len(), || whole.clone());
-        unexplained.clone_from(whole);
-        for (contact, frame) in frames.iter_mut().enumerate() {
-            for component in &mut *product {
-                component.clear();
-                component.resize(orbits.count(), 0.0);
+        let mut first = 0;
+        for Separation { whole, found, forces, status, .. } in &frames[..*used] {
+            let contacts = found.taxels.len();
+            if parts.len() < first + contacts {
+                parts.resize_with(first + contacts, || (whole.clone(), Contact::default()));
+                alone.resize_with(first + contacts, || Solution::zeros(Status::default(), 0));
             }
-            for (matrix, forces) in [c31, c32, c33].into_iter().zip(&*forces) {
-                let own = |taxel: usize| if found.regions[taxel] == Some(contact) { forces[taxel] } else { 0.0 };
-                orbits.fold_into(folded, own);
-                matrix.add_to(product, folded);
+            let parts = &mut parts[first..first + contacts];
+            unexplained.clone_from(whole);
+            for (contact, (part, _)) in parts.iter_mut().enumerate() {
+                for component in &mut *product {
+                    component.clear();
+                    component.resize(orbits.count(), 0.0);
+                }
+                for (matrix, forces) in [c31, c32, c33].into_iter().zip(forces) {
+                    let own = |taxel: usize| if found.regions[taxel] == Some(contact) { forces[taxel] } else { 0.0 };
+                    orbits.fold_into(folded, own);
+                    matrix.add_to(product, folded);
+                }
+                orbits.unfold_into(product, part.as_mut_slice());
+                *unexplained -= &*part;
             }
-            orbits.unfold_into(product, frame.as_mut_slice());
-            *unexplained -= &*frame;
+            // Without a filter, which makes forces inexact, this is rounding.
+            for (taxel, (&stress, &contact)) in unexplained.iter().zip(&found.regions).enumerate() {
+                if let Some(contact) = contact {
+                    parts[contact].0[taxel] += stress;
+                }
+            }
+            for ((part, contact), alone) in parts.iter_mut().zip(&mut alone[first..]) {
+                if !self.reader.reads_tension() {
+                    part.apply(|stress| *stress = stress.min(0.0));
+                }
+                *contact = self.reader.analyse(part);
+                alone.reset(*status, self.solved_length());
+            }
+            first += contacts;
         }
-        // Without a filter, which makes forces inexact, this is rounding.
-        for (taxel, (&stress, &contact)) in unexplained.iter().zip(&found.regions).enumerate() {
-            if let Some(contact) = contact {
-                frames[contact][taxel] += stress;
-            }
-        }
-        if !self.reader.reads_tension() {
-            for frame in frames {
-                frame.apply(|stress| *stress = stress.min(0.0));
-            }
-        }
+        first
     }
 
     /// The record of the contact that a solution is of.

@@ -6,7 +6,7 @@ use nalgebra::DVector;
 
 use super::batch::{self, BatchFrame};
 use super::reading::{Given, Past, Reading};
-use super::separate::{Counted, Separation};
+use super::separate::{Counted, Separations};
 use super::{Estimate, Paper, Products, Reduced, Slips, Solution, Solver, SolverError, Status};
 use crate::estimators::{Contact, FrictionScratch, Seen};
 use crate::parity::{COMPONENTS, Orbits};
@@ -20,11 +20,13 @@ pub struct Workspace {
     orbits: Orbits,
     /// Forces along each axis that a frame is solved for.
     forces: usize,
-    pub(super) b: DVector<f64>,
+    b: DVector<f64>,
     friction: FrictionScratch,
     products: Scratch,
-    /// The contacts of the frame.
-    pub(super) separation: Separation,
+    /// The contacts of frames that have several.
+    separations: Separations,
+    /// Of each frame that is solved together with others, its contacts.
+    counted: Vec<Counted>,
     /// What slipped in the last frame.
     slips: Slips,
     /// What the frames solved leave to the next ones.
@@ -73,7 +75,8 @@ impl Solver {
                 Products::Paper(paper) => Scratch::Paper(Box::new(paper.engine.frame())),
                 Products::Reduced(reduced) => Scratch::Reduced(Box::new(reduced.engine.frame())),
             },
-            separation: Separation::default(),
+            separations: Separations::default(),
+            counted: Vec::new(),
             slips: Slips::default(),
             past: Past::default(),
             batches: Batches::default(),
@@ -110,19 +113,19 @@ impl Solver {
             Reading::Contact { contact, status } => {
                 solution.reset(status, self.solved_length());
                 self.solve_alone(workspace, contact, solution);
-                counted = self.separate(workspace, status, solution);
+                let mut separations = std::mem::take(&mut workspace.separations);
+                separations.clear();
+                counted = self.count_contacts(&mut separations, (&workspace.b, status), (0, solution));
+                self.separate(&mut separations, std::slice::from_mut(solution), |parts, solutions| {
+                    for ((b, contact), solution) in parts.iter().zip(solutions) {
+                        workspace.b.copy_from(b);
+                        self.solve_alone(workspace, *contact, solution);
+                    }
+                });
+                workspace.separations = separations;
             }
         }
         self.finish(workspace, counted, solution);
-    }
-
-    /// Finds the contacts of the workspace's stress, solved as that of one; where there are several, solves them.
-    fn separate(&self, workspace: &mut Workspace, status: Status, solution: &mut Solution) -> Counted {
-        let counted = self.count_contacts(&workspace.b, &mut workspace.separation);
-        if counted.has_several() {
-            self.solve_contacts(workspace, status, solution);
-        }
-        counted
     }
 
     /// What follows from the forces of a frame.
@@ -138,7 +141,7 @@ impl Solver {
     }
 
     /// Finds the forces of the workspace's stress as those of one contact.
-    pub(super) fn solve_alone(&self, workspace: &mut Workspace, contact: Contact, solution: &mut Solution) {
+    fn solve_alone(&self, workspace: &mut Workspace, contact: Contact, solution: &mut Solution) {
         let Workspace { b, friction: scratch, products, .. } = workspace;
         let b = b.as_slice();
         match (&self.products, products) {
@@ -266,15 +269,29 @@ impl Solver {
                 }
             }
             batch.solve(&self.estimate, &mut workspace.friction, solutions);
-            for (&frame, solution) in frames.iter().zip(solutions) {
-                let mut counted = Counted::default();
+            let Workspace { b, friction, separations, counted, .. } = &mut *workspace;
+            separations.clear();
+            counted.clear();
+            for (index, (&frame, solution)) in frames.iter().zip(&mut *solutions).enumerate() {
+                counted.push(Counted::default());
                 // Its stress, and its status before it was solved, once more: they are kept of no frame.
                 if self.finder.is_some()
-                    && let Reading::Contact { status, .. } = self.reader.read(frame, &mut workspace.b)?
+                    && let Reading::Contact { status, .. } = self.reader.read(frame, b)?
                 {
-                    counted = self.separate(workspace, status, solution);
+                    counted[index] = self.count_contacts(separations, (b, status), (index, solution));
                 }
-                self.finish(workspace, counted, solution);
+            }
+            self.separate(separations, solutions, |parts, solutions| {
+                for (parts, solutions) in parts.chunks(FRAMES).zip(solutions.chunks_mut(FRAMES)) {
+                    batch.clear();
+                    for (index, (b, contact)) in parts.iter().enumerate() {
+                        batch.push(index, *contact, b.as_slice());
+                    }
+                    batch.solve(&self.estimate, friction, solutions);
+                }
+            });
+            for (index, solution) in solutions.iter_mut().enumerate() {
+                self.finish(workspace, workspace.counted[index], solution);
             }
         }
         Ok(())
