@@ -222,7 +222,7 @@ tables: tools ## Measure the tables of errors anew, into results/ (an hour and a
 	@$(XTASK_RELEASE) study smoothing $(WIDE) --out results/smoothing.csv
 	@$(XTASK_RELEASE) study confidence $(FAST) $(WIDE) --out results/confidence.csv
 	@$(XTASK_RELEASE) study drift designs/sensor1-fast.toml designs/sensor1-wide.toml --out results/drift.csv
-	@$(CARGO) test -p sptfra-golden --test suite -- --ignored table clipped::families recorded::figures
+	@$(CARGO) test -p sptfra-golden --test suite -- --ignored table clipped::kinds recorded::figures
 	@$(CARGO) test -p sptfra-testbench --test suite -- --ignored count_contacts::table
 	@python3 tools/plots.py
 

@@ -104,11 +104,6 @@ impl Kind {
         }
     }
 
-    /// Whether the contacts have frictions of their own, whatever is asked for.
-    pub fn has_own_friction(self) -> bool {
-        matches!(self, Self::MixedInside | Self::Mixed)
-    }
-
     /// Frames of this kind, one for each seed, with what pulls in them.
     ///
     /// # Errors

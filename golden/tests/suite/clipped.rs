@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
+use crate::contact_kinds::{cells, has_own_friction, judge as judged, share};
 use crate::contacts::{Pressed, Truth, errors_of as judge, frames, inside};
 use crate::designs::{design, renew_table};
-use crate::families::{cells, judge as judged, share};
 use golden::scene::{Kind, Medium};
 use golden::solver::Solver;
 
@@ -75,13 +75,13 @@ fn table() {
 
 #[test]
 #[ignore = "writes results/clipped-kinds.csv; minutes"]
-fn families() {
+fn kinds() {
     let mut rows = String::new();
     for sensor in ["sensor1", "sensor2"] {
         let design = design(&format!("{sensor}-clipped-wide"));
         let solver = Solver::new(&design).unwrap();
         for kind in Kind::ALL {
-            let count = if kind.has_own_friction() { 2000 } else { 200 };
+            let count = if has_own_friction(kind) { 2000 } else { 200 };
             let mut frames = kind.frames(&design.sensor, 0.5, 1000..1000 + count).unwrap();
             for stress in frames.iter_mut().flat_map(|frame| &mut frame.stress) {
                 *stress = stress.min(0.0);

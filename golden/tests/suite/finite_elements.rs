@@ -11,7 +11,7 @@ use golden::geometry;
 use golden::metrics::{Outcome, Quantiles};
 use golden::solver::{Solver, Status};
 
-use crate::families::share;
+use crate::contact_kinds::share;
 
 fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)

@@ -59,7 +59,7 @@ fn contacts_in_the_middle() {
     }
 }
 
-/// The wide family costs little of the narrow one's exactness where there is no noise.
+/// The general training set costs little of the exactness of the sliding one where there is no noise.
 #[test]
 fn wide_designs_keep_to_the_narrow_goals() {
     for name in ["sensor1-wide", "sensor2-wide"] {
@@ -303,9 +303,9 @@ fn a_transposed_frame_has_transposed_forces_on_a_square() {
     let square = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
         name = \"pad\"\n[sensor]\ncolumns = 6\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
                   [algorithm]\nestimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]\n";
-    for (family, hidden) in [(TrainingSet::Sliding, 5), (TrainingSet::General, 4)] {
+    for (training_set, hidden) in [(TrainingSet::Sliding, 5), (TrainingSet::General, 4)] {
         let mut design = Design::from_toml(square, "pad.toml").unwrap();
-        design.algorithm.joint.training_set = family;
+        design.algorithm.joint.training_set = training_set;
         let settings = Settings { seed: 3, contacts: 40, samples: 200, hidden, spare: 0, steps: 100, hollow: false };
         *design.algorithm.joint = calibrate(&design, &settings, &mut |_| ()).unwrap();
         let solver = Solver::new(&design).unwrap();

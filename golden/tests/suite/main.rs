@@ -4,6 +4,7 @@ mod bank;
 mod check;
 mod choose;
 mod clipped;
+mod contact_kinds;
 mod contacts;
 mod crosstalk;
 mod curve;
@@ -14,7 +15,6 @@ mod designs;
 #[allow(dead_code, reason = "shared with the tests of the RTL, which use all of it")]
 mod effort;
 mod estimator;
-mod families;
 mod finite_elements;
 mod fuzz;
 mod half_space;

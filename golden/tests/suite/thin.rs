@@ -9,9 +9,9 @@ use golden::scene::Medium;
 use golden::solver::{Solver, Status};
 use rayon::prelude::*;
 
+use crate::contact_kinds::share;
 use crate::contacts::{errors_of, frames, inside};
 use crate::designs::renew_table;
-use crate::families::share;
 
 const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
 /// Of contacts; calibrations have another seed and another way to draw.

@@ -64,7 +64,8 @@ fn mean_along(solver: &Solver, frames: &[SceneFrame]) -> f64 {
     frames.iter().map(along).sum::<f64>() / frames.len() as f64
 }
 
-/// Most of the median and of 95 % of the errors of the wide family's designs, in percent, on either sensor; and which way.
+/// On either sensor, with the general training set: the most that the median and 95 % of the errors may be, in percent,
+/// and which way they go.
 #[test]
 fn layers_unlike_the_design_err_as_stated() {
     for sensor in ["sensor1", "sensor2"] {

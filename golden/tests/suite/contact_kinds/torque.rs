@@ -8,7 +8,7 @@ use golden::scene::{Kind, SceneFrame};
 use golden::sensor::Sensor;
 use golden::solver::Solver;
 
-use super::design;
+use super::{design, has_own_friction};
 use crate::designs::renew_table;
 
 /// Errors over the normal force in mm.
@@ -89,7 +89,7 @@ fn table() {
     let solvers = ["sensor1", "sensor2"]
         .map(|sensor| ["none", "wide"].map(|kind| Solver::new(&design(&format!("{sensor}-{kind}"))).unwrap()));
     for kind in Kind::ALL {
-        let count = if kind.has_own_friction() { 2000 } else { 200 };
+        let count = if has_own_friction(kind) { 2000 } else { 200 };
         for (number, [line, wide]) in solvers.iter().enumerate() {
             let frames = kind.frames(wide.matrices().sensor(), 0.5, 1000..1000 + count).unwrap();
             let [line, wide] = [line, wide].map(|solver| judge(solver, &frames));
