@@ -17,7 +17,7 @@ pub enum PlanError {
     /// The estimator has no hardware in this plan.
     #[error(
         "[algorithm] plan = \"paper\": the paper's plan has the line search only; write plan = \"reduced\", or \
-         estimator = \"line\" and remove gain, tangential and correction"
+         estimator = \"line\" and remove gain, friction_correction and correction"
     )]
     JointEstimator,
     /// The matrices of this geometry cannot be computed.
