@@ -7,7 +7,7 @@ use nalgebra_sparse::{CooMatrix, CsrMatrix};
 
 use crate::design::{Filter, MatrixFilter};
 use crate::matrices::Matrices;
-use crate::names::{MatrixName, ReducedName};
+use crate::names::MatrixName;
 use crate::parity::{FoldedMatrix, sign};
 
 /// Why a filter cannot be used.
@@ -19,37 +19,14 @@ pub enum FilterError {
          once and use RESOLVED.toml"
     )]
     Unresolved,
-    /// Nothing of a matrix is left.
-    #[error("the filter {filter} empties matrix {matrix}; use a weaker filter (f1: smaller l, f2: larger p)")]
-    EmptyMatrix {
-        /// The matrix.
-        matrix: MatrixName,
-        /// Its filter.
-        filter: MatrixFilter,
-    },
     /// Nothing of a row is left, so a taxel would get no result.
-    #[error(
-        "the filter {filter} empties row {row} of matrix {matrix}; use a weaker filter (f1: smaller l, f2: larger p)"
-    )]
+    #[error("the filter {filter} empties row {row} of {matrix}; use a weaker filter (f1: smaller l, f2: larger p)")]
     EmptyRow {
-        /// The matrix.
-        matrix: MatrixName,
+        /// The matrix, with its kind.
+        matrix: String,
         /// The first empty row, from 0.
         row: usize,
         /// Its filter.
-        filter: MatrixFilter,
-    },
-    /// Nothing of a row of a folded matrix is left.
-    #[error(
-        "the filter {filter} empties row {row} of the folded matrix {matrix}; use a weaker filter (f1: smaller l, f2: \
-         larger p)"
-    )]
-    EmptyFoldedRow {
-        /// The matrix.
-        matrix: ReducedName,
-        /// The first empty row, from 0.
-        row: usize,
-        /// The filter.
         filter: MatrixFilter,
     },
     /// F3 with the reduced plan.
@@ -172,11 +149,8 @@ fn rule(matrix: &DMatrix<f64>, filter: MatrixFilter) -> impl Fn(usize, usize) ->
 /// One of the 13 matrices after its filter, no row of it empty.
 fn filtered(matrices: &Matrices, name: MatrixName, filter: MatrixFilter) -> Result<CsrMatrix<f64>, FilterError> {
     let matrix = apply(&matrices.dense(name), filter);
-    if matrix.nnz() == 0 {
-        return Err(FilterError::EmptyMatrix { matrix: name, filter });
-    }
     match matrix.row_iter().position(|row| row.nnz() == 0) {
-        Some(row) => Err(FilterError::EmptyRow { matrix: name, row, filter }),
+        Some(row) => Err(FilterError::EmptyRow { matrix: format!("matrix {name}"), row, filter }),
         None => Ok(matrix),
     }
 }

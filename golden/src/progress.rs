@@ -85,11 +85,6 @@ impl Progress {
         self.bar.set_message(what);
     }
 
-    /// A line that stays, above what changes.
-    pub fn say(&self, line: &str) {
-        self.bar.suspend(|| eprintln!("{line}"));
-    }
-
     /// One step of it is done.
     pub fn step(&self) {
         self.bar.inc(1);

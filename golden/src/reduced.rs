@@ -156,7 +156,7 @@ impl ReducedMatrices {
     /// # Errors
     ///
     /// [`FilterError::Reduced`] for F3, whose choices are for the thirteen matrices of the paper,
-    /// [`FilterError::EmptyFoldedRow`] when a row loses every entry.
+    /// [`FilterError::EmptyRow`] when a row loses every entry.
     pub fn new(matrices: &Matrices, orbits: &Orbits, filter: &Filter) -> Result<Self, FilterError> {
         let rule = match filter {
             Filter::None => MatrixFilter::None,
@@ -253,7 +253,8 @@ fn filtered(
         if kept.is_empty() && thresholds.iter().all(|&threshold| threshold == 0.0) {
             kept.push(entry(row));
         }
-        if kept.is_empty() { Err(FilterError::EmptyFoldedRow { matrix: name, row, filter }) } else { Ok(kept) }
+        let empty = || FilterError::EmptyRow { matrix: format!("the folded matrix {name}"), row, filter };
+        if kept.is_empty() { Err(empty()) } else { Ok(kept) }
     });
     Ok(FoldedRows { parity: folded.parity, rows: rows.collect::<Result<_, _>>()? })
 }

@@ -90,13 +90,13 @@ impl<'a> Observer<'a> {
         for stress in &mut frame {
             *stress = tension.of(scale * (*stress + deviation * normal(random)));
         }
-        let Some(seen) = self.solver.see(&mut self.workspace, &frame)? else { return Ok(None) };
-        let found = joint::raw(&seen, &mut self.scratch);
+        let Some(inputs) = self.solver.inputs(&mut self.workspace, &frame)? else { return Ok(None) };
+        let found = joint::raw(&inputs, &mut self.scratch);
         if found.status.contains(Status::DIRECTION_UNKNOWN) {
             return Ok(None);
         }
-        joint::features(&seen, found.mu, self.design.sensor.columns, self.half_window, 0.0, &mut self.scratch);
+        joint::features(&inputs, found.mu, self.design.sensor.columns, self.half_window, 0.0, &mut self.scratch);
         let force = force.map(|component| scale * component);
-        Ok(Some(Sample { mu: found.mu, features: self.scratch.features.clone(), sums: *seen.sums, force }))
+        Ok(Some(Sample { mu: found.mu, features: self.scratch.features.clone(), sums: *inputs.sums, force }))
     }
 }

@@ -1,12 +1,12 @@
 //! The friction estimators, and what all of them have in common.
 //!
-//! An estimator finds the friction components of a frame from what either plan knows of it, [`Seen`]. Each has a folder of
+//! An estimator finds the friction components of a frame from what either plan knows of it, [`Inputs`]. Each has a folder of
 //! its own; outside of it the registry here, the design file's parser and the calibration, which is the joint one's, know
 //! its name. `docs/explanation/estimators.md` compares them.
 
+mod interface;
 pub mod joint;
 pub mod line;
-mod seen;
 pub(crate) mod standard_error;
 mod thin;
 
@@ -16,10 +16,10 @@ use serde::{Deserialize, Serialize};
 use crate::kernel::Kernel;
 use crate::sensor::Sensor;
 use crate::words::print_as_words;
+pub use interface::{Contact, RANGE};
+pub(crate) use interface::{Estimate, Inputs};
 use joint::{Joint, JointConstants, JointScratch};
 use line::LineScratch;
-pub(crate) use seen::{Answer, Seen};
-pub use seen::{Contact, RANGE};
 pub use standard_error::{BORDER, ERROR_FRACTION, ERROR_RANGE, StandardError, log as error_log};
 pub(crate) use thin::Thin;
 
@@ -103,13 +103,14 @@ impl Friction {
     }
 
     /// Finds the components `[mu_x, mu_y]`, and the status bits to raise.
-    pub(crate) fn find(&self, seen: &Seen, scratch: &mut FrictionScratch) -> Answer {
+    pub(crate) fn find(&self, inputs: &Inputs, scratch: &mut FrictionScratch) -> Estimate {
         match self {
             Self::Line => {
-                let (status, mu) = line::friction(&seen.contact, seen.sums, seen.u, line::LEVEL, &mut scratch.line);
-                Answer { status, mu }
+                let (status, mu) =
+                    line::friction(&inputs.contact, inputs.sums, inputs.u, line::LEVEL, &mut scratch.line);
+                Estimate { status, mu }
             }
-            Self::Joint(joint) => joint.find(seen, &mut scratch.joint),
+            Self::Joint(joint) => joint.find(inputs, &mut scratch.joint),
         }
     }
 

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{Estimate, Solution};
-use crate::estimators::{Contact, FrictionScratch, Seen};
+use super::{Estimators, Solution};
+use crate::estimators::{Contact, FrictionScratch, Inputs};
 use crate::filter::FilteredMatrices;
 use crate::matrices::MatrixName;
 use crate::names::ReducedName;
@@ -67,7 +67,7 @@ impl<const W: usize> BatchFrame<W> {
     }
 
     /// Finds the forces of all frames.
-    pub(super) fn solve(&mut self, estimate: &Estimate, scratch: &mut FrictionScratch, solutions: &mut [Solution]) {
+    pub(super) fn solve(&mut self, estimators: &Estimators, scratch: &mut FrictionScratch, solutions: &mut [Solution]) {
         let before_friction = self.list.before_friction();
         self.frame.load(&self.batch);
         self.run(0..before_friction);
@@ -75,8 +75,8 @@ impl<const W: usize> BatchFrame<W> {
             let of_frame = column * self.taxels..(column + 1) * self.taxels;
             let u = self.frame.u.each_ref().map(|u| &u[of_frame.clone()]);
             let b = &self.frame.stress[of_frame];
-            let seen = Seen { b, contact: *contact, sums: &self.frame.sums[column], u };
-            self.batch.friction[column] = solutions[*index].optimum(estimate, &seen, scratch);
+            let inputs = Inputs { b, contact: *contact, sums: &self.frame.sums[column], u };
+            self.batch.friction[column] = solutions[*index].optimum(estimators, &inputs, scratch);
         }
         self.run(before_friction..self.list.steps.len());
         if self.list.has_forces() {

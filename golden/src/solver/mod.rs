@@ -24,7 +24,7 @@ use std::sync::{Arc, OnceLock};
 use crate::contacts::{ContactForces, Finder};
 use crate::design::{Design, Outputs, PlanKind, Slip};
 use crate::estimators::standard_error::Confidence;
-use crate::estimators::{Answer, Friction, FrictionScratch, Seen};
+use crate::estimators::{Estimate, Friction, FrictionScratch, Inputs};
 use crate::filter::{FilterError, FilteredMatrices};
 use crate::matrices::{Matrices, MatrixError};
 use crate::parity::COMPONENTS;
@@ -136,21 +136,21 @@ impl Solution {
     }
 
     /// Finds the friction components, and puts them and what follows from them in place.
-    fn optimum(&mut self, estimate: &Estimate, seen: &Seen, scratch: &mut FrictionScratch) -> [f64; 2] {
-        let Estimate { friction, confidence } = estimate;
-        let Answer { status, mu } = friction.find(seen, scratch);
+    fn optimum(&mut self, estimators: &Estimators, inputs: &Inputs, scratch: &mut FrictionScratch) -> [f64; 2] {
+        let Estimators { friction, confidence } = estimators;
+        let Estimate { status, mu } = friction.find(inputs, scratch);
         self.status.insert(status);
         if !status.contains(Status::DIRECTION_UNKNOWN) && mu[0].abs() + mu[1].abs() < PULLING {
             self.status.remove(Status::NO_TENSION);
         }
-        let [fx, fy, fz, tx, ty, tz] = seen.sums.map(|[g0, g1, g2]| g0 + mu[0] * g1 + mu[1] * g2);
+        let [fx, fy, fz, tx, ty, tz] = inputs.sums.map(|[g0, g1, g2]| g0 + mu[0] * g1 + mu[1] * g2);
         let resultant = [fx, fy, fz];
         [self.mu_x, self.mu_y] = mu;
         (self.resultant, self.torque, self.contacts) = (resultant, [tx, ty, tz], 1);
         if let Some(of) = confidence {
             // Without a direction the error is as much as presses.
             let unknown = status.contains(Status::DIRECTION_UNKNOWN);
-            let share = if unknown { 1.0 } else { of.share(seen.b) };
+            let share = if unknown { 1.0 } else { of.share(inputs.b) };
             self.standard_error = share * fz.abs();
             if share > of.most {
                 self.status.insert(Status::LOW_CONFIDENCE);
@@ -172,7 +172,7 @@ pub struct Solver {
     reader: Reader,
     matrices: Matrices,
     products: Products,
-    estimate: Estimate,
+    estimators: Estimators,
     /// Where contacts are separated, or counted.
     finder: Option<Finder>,
     /// Whether solutions have the forces of all taxels.
@@ -184,7 +184,7 @@ pub struct Solver {
 
 /// What a frame's friction and standard error are found with.
 #[derive(Clone, Debug)]
-struct Estimate {
+struct Estimators {
     friction: Friction,
     confidence: Option<Confidence>,
 }
@@ -192,23 +192,16 @@ struct Estimate {
 /// The products of the design's plan.
 #[derive(Clone, Debug)]
 enum Products {
-    Paper(Box<Paper>),
-    Reduced(Box<Reduced>),
+    Paper(Box<OfPlan<PaperMatrices, 1>>),
+    Reduced(Box<OfPlan<ReducedMatrices, COMPONENTS>>),
 }
 
-/// Those of the paper's plan, and what several frames at once need.
+/// Those of one plan, and what several frames at once need.
 #[derive(Clone, Debug)]
-struct Paper {
-    engine: Engine<f64, PaperMatrices, 1>,
+struct OfPlan<S, const W: usize> {
+    engine: Engine<f64, S, W>,
     /// Made when first used.
-    blocks: OnceLock<Arc<Blocks<1>>>,
-}
-
-/// Those of the reduced plan, likewise.
-#[derive(Clone, Debug)]
-struct Reduced {
-    engine: Engine<f64, ReducedMatrices, COMPONENTS>,
-    blocks: OnceLock<Arc<Blocks<COMPONENTS>>>,
+    blocks: OnceLock<Arc<Blocks<W>>>,
 }
 
 impl Solver {
@@ -231,7 +224,7 @@ impl Solver {
                 let list = ProductList::paper().fewer_products(field).folded();
                 let orbits = *matrices.orbits();
                 let engine = Engine::new(list, reduced, orbits.all(), orbits.taxels());
-                Self::with(design, matrices, Products::Reduced(Box::new(Reduced { engine, blocks: OnceLock::new() })))
+                Self::with(design, matrices, Products::Reduced(Box::new(OfPlan { engine, blocks: OnceLock::new() })))
             }),
         }
         .map_err(|source| SolverError::Filter { name: name(), source })
@@ -243,11 +236,11 @@ impl Solver {
         let stored = PaperMatrices::new(&matrices, filtered);
         let images = (0..taxels).map(|taxel| [taxel]).collect();
         let engine = Engine::new(ProductList::paper(), stored, images, taxels);
-        Self::with(design, matrices, Products::Paper(Box::new(Paper { engine, blocks: OnceLock::new() })))
+        Self::with(design, matrices, Products::Paper(Box::new(OfPlan { engine, blocks: OnceLock::new() })))
     }
 
     fn with(design: &Design, matrices: Matrices, products: Products) -> Self {
-        let estimate = Estimate {
+        let estimators = Estimators {
             friction: Friction::new(design.algorithm.constants(), &design.sensor),
             confidence: Confidence::of(design),
         };
@@ -257,7 +250,7 @@ impl Solver {
         let max_standard_error = design.algorithm.max_standard_error;
         // By the paper's plan every solution has them.
         let keeps_field = design.algorithm.outputs == Outputs::Field || matches!(products, Products::Paper(_));
-        Self { reader, matrices, products, estimate, finder, keeps_field, max_standard_error, slip }
+        Self { reader, matrices, products, estimators, finder, keeps_field, max_standard_error, slip }
     }
 
     /// The unfiltered matrices.

@@ -7,8 +7,8 @@ use nalgebra::DVector;
 use super::batch::{self, BatchFrame};
 use super::reading::{Given, Past, Reading};
 use super::separate::{Counted, Separations};
-use super::{Estimate, Paper, Products, Reduced, Slips, Solution, Solver, SolverError, Status};
-use crate::estimators::{Contact, FrictionScratch, Seen};
+use super::{Estimators, OfPlan, Products, Slips, Solution, Solver, SolverError, Status};
+use crate::estimators::{Contact, FrictionScratch, Inputs};
 use crate::parity::{COMPONENTS, Orbits};
 use crate::products::batch::{Blocks, FRAMES};
 use crate::products::{Engine, PaperMatrices, ProductList, RealFrame, Stored};
@@ -134,7 +134,7 @@ impl Solver {
         if self.field_length() == 0 {
             solution.field.iter_mut().for_each(Vec::clear);
         }
-        if let Some(gain) = self.estimate.friction.gain() {
+        if let Some(gain) = self.estimators.friction.gain() {
             solution.scale(gain);
         }
         self.note_slip(&mut workspace.slips, &mut solution.status, solution.mu, &mut solution.records);
@@ -146,25 +146,29 @@ impl Solver {
         let b = b.as_slice();
         match (&self.products, products) {
             (Products::Paper(paper), Scratch::Paper(frame)) => {
-                solve(&paper.engine, frame, (b, contact), &self.estimate, scratch, solution);
+                solve(&paper.engine, frame, (b, contact), &self.estimators, scratch, solution);
             }
             (Products::Reduced(reduced), Scratch::Reduced(frame)) => {
-                solve(&reduced.engine, frame, (b, contact), &self.estimate, scratch, solution);
+                solve(&reduced.engine, frame, (b, contact), &self.estimators, scratch, solution);
             }
             // `fit` has seen to it that there is no other case.
             _ => {}
         }
     }
 
-    /// What an estimator sees of a frame; `None` for a frame without an answer.
-    pub(crate) fn see<'a>(&self, workspace: &'a mut Workspace, frame: &[f64]) -> Result<Option<Seen<'a>>, SolverError> {
+    /// The inputs of an estimator; `None` for a frame without an answer.
+    pub(crate) fn inputs<'a>(
+        &self,
+        workspace: &'a mut Workspace,
+        frame: &[f64],
+    ) -> Result<Option<Inputs<'a>>, SolverError> {
         self.fit(workspace);
         let Workspace { b, products, .. } = workspace;
         let Reading::Contact { contact, .. } = self.reader.read(Given::Values(frame), b)? else { return Ok(None) };
         let b = b.as_slice();
         Ok(match (&self.products, products) {
-            (Products::Paper(paper), Scratch::Paper(frame)) => Some(see(&paper.engine, frame, b, contact)),
-            (Products::Reduced(reduced), Scratch::Reduced(frame)) => Some(see(&reduced.engine, frame, b, contact)),
+            (Products::Paper(paper), Scratch::Paper(frame)) => Some(inputs(&paper.engine, frame, b, contact)),
+            (Products::Reduced(reduced), Scratch::Reduced(frame)) => Some(inputs(&reduced.engine, frame, b, contact)),
             // As above.
             _ => None,
         })
@@ -222,7 +226,7 @@ impl Solver {
         let orbits = self.matrices.orbits();
         match &self.products {
             Products::Paper(paper) if batch::pays_whole(&paper.engine.stored().filtered, orbits.taxels()) => {
-                let Paper { engine, blocks } = &**paper;
+                let OfPlan { engine, blocks } = &**paper;
                 let whole = || Arc::new(Blocks::whole(&engine.list, &engine.stored().filtered, &self.matrices));
                 let blocks = blocks.get_or_init(whole);
                 let mut batch = made(workspace.batches.paper.take(), &engine.list, blocks);
@@ -231,7 +235,7 @@ impl Solver {
                 result
             }
             Products::Reduced(reduced) if batch::pays_folded(reduced.engine.stored(), orbits) => {
-                let Reduced { engine, blocks } = &**reduced;
+                let OfPlan { engine, blocks } = &**reduced;
                 let blocks = blocks.get_or_init(|| Arc::new(Blocks::folded(&engine.list, engine.stored(), orbits)));
                 let mut batch = made(workspace.batches.reduced.take(), &engine.list, blocks);
                 let result = self.solve_together(workspace, &mut batch, frames, solutions);
@@ -268,7 +272,7 @@ impl Solver {
                     }
                 }
             }
-            batch.solve(&self.estimate, &mut workspace.friction, solutions);
+            batch.solve(&self.estimators, &mut workspace.friction, solutions);
             let Workspace { b, friction, separations, counted, .. } = &mut *workspace;
             separations.clear();
             counted.clear();
@@ -287,7 +291,7 @@ impl Solver {
                     for (index, (b, contact)) in parts.iter().enumerate() {
                         batch.push(index, *contact, b.as_slice());
                     }
-                    batch.solve(&self.estimate, friction, solutions);
+                    batch.solve(&self.estimators, friction, solutions);
                 }
             });
             for (index, solution) in solutions.iter_mut().enumerate() {
@@ -315,24 +319,24 @@ fn solve<S: Stored<W>, const W: usize>(
     engine: &Engine<f64, S, W>,
     frame: &mut RealFrame<f64, S, W>,
     (b, contact): (&[f64], Contact),
-    estimate: &Estimate,
+    estimators: &Estimators,
     scratch: &mut FrictionScratch,
     solution: &mut Solution,
 ) {
-    let mu = solution.optimum(estimate, &see(engine, frame, b, contact), scratch);
+    let mu = solution.optimum(estimators, &inputs(engine, frame, b, contact), scratch);
     engine.field(mu, frame, |p, taxel, force| solution.field[p][taxel] = force);
 }
 
-/// What an estimator sees of the stress `b` (pascals, length m).
-fn see<'a, S: Stored<W>, const W: usize>(
+/// The inputs of an estimator from the stress `b` (pascals, length m).
+fn inputs<'a, S: Stored<W>, const W: usize>(
     engine: &Engine<f64, S, W>,
     frame: &'a mut RealFrame<f64, S, W>,
     b: &'a [f64],
     contact: Contact,
-) -> Seen<'a> {
+) -> Inputs<'a> {
     frame.stress.copy_from_slice(b);
     engine.until_friction(frame);
-    Seen { b, contact, sums: &frame.sums, u: frame.u.each_ref().map(Vec::as_slice) }
+    Inputs { b, contact, sums: &frame.sums, u: frame.u.each_ref().map(Vec::as_slice) }
 }
 
 /// Memory of a batch with these matrices: that of before, if it is.

@@ -1,21 +1,13 @@
 //! Condition 1 on a grid over the plane of both friction components, and the centroid of its level set.
 
 use super::grid::Grid;
+use crate::estimators::Estimate;
 use crate::status::Status;
 
 /// Sums side by side, so that a processor may form several at once.
 const LANES: usize = 8;
 /// Share of a value by which rounding may make it less than convexity has it, and much more.
 const ROUNDING: f64 = 1e-9;
-
-/// What the search over the grid finds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Found {
-    /// Bits raised.
-    pub(crate) status: Status,
-    /// Weighted centroid of the level set.
-    pub(crate) mu: [f64; 2],
-}
 
 /// Memory of the search, to be used again for the next frame.
 #[derive(Clone, Debug, Default)]
@@ -90,7 +82,13 @@ fn evaluate(side: usize, value: impl Fn(usize, usize) -> f64, allowance: f64, va
 }
 
 /// Searches the grid for `u_q` in pascals, the dead zone in pascals and the allowance above the least value.
-pub(super) fn search(grid: Grid, u: [&[f64]; 3], dead_zone: f64, allowance: f64, scratch: &mut GridScratch) -> Found {
+pub(super) fn search(
+    grid: Grid,
+    u: [&[f64]; 3],
+    dead_zone: f64,
+    allowance: f64,
+    scratch: &mut GridScratch,
+) -> Estimate {
     let GridScratch { u: pulled, columns, rows, values } = scratch;
     let (side, reach) = (grid.side(), f64::from(grid.reach));
     let largest = grid.step() * reach;
@@ -127,7 +125,7 @@ pub(super) fn search(grid: Grid, u: [&[f64]; 3], dead_zone: f64, allowance: f64,
     let mut status = Status::default();
     if [0, side - 1, side * (side - 1), side * side - 1].iter().all(|&corner| values[corner] < level) {
         status.insert(Status::DIRECTION_UNKNOWN);
-        return Found { status, mu: [0.0; 2] };
+        return Estimate { status, mu: [0.0; 2] };
     }
     if on_border < inside {
         status.insert(Status::AT_BOUND);
@@ -144,7 +142,7 @@ pub(super) fn search(grid: Grid, u: [&[f64]; 3], dead_zone: f64, allowance: f64,
     }
     // With an allowance above 0 the best point has a weight.
     let mu = if sums[0] > 0.0 { [sums[1], sums[2]].map(|sum| grid.step() * sum / sums[0]) } else { [0.0; 2] };
-    Found { status, mu }
+    Estimate { status, mu }
 }
 
 #[cfg(test)]
@@ -155,7 +153,7 @@ mod tests {
         [0, 1, 2].map(|q| rows.iter().map(|row| row[q]).collect())
     }
 
-    fn search(u: &[Vec<f64>; 3], dead_zone: f64, allowance: f64) -> Found {
+    fn search(u: &[Vec<f64>; 3], dead_zone: f64, allowance: f64) -> Estimate {
         super::search(Grid::SEARCH, u.each_ref().map(Vec::as_slice), dead_zone, allowance, &mut GridScratch::default())
     }
 
@@ -269,7 +267,7 @@ mod tests {
     fn nothing_that_limits_friction_means_no_direction() {
         let u = vectors([[-1.0, 0.0, 0.0]; 4]);
         let found = search(&u, 0.0, 0.5);
-        assert_eq!(found, Found { status: Status::DIRECTION_UNKNOWN, mu: [0.0; 2] });
+        assert_eq!(found, Estimate { status: Status::DIRECTION_UNKNOWN, mu: [0.0; 2] });
     }
 
     #[test]

@@ -12,7 +12,7 @@ mod network;
 mod thin;
 mod weights;
 
-use super::seen::{Answer, RANGE, Seen};
+use super::interface::{Estimate, Inputs, RANGE};
 use crate::numbers::magnitude;
 use crate::status::Status;
 pub use constants::{
@@ -21,7 +21,6 @@ pub use constants::{
 pub(crate) use features::Features;
 pub use features::{STRESS_SCALE, TIE};
 pub use grid::Grid;
-pub(crate) use level_set::Found;
 use level_set::{GridScratch, search};
 pub(crate) use network::EXTRA_COMPONENTS;
 pub use network::LARGEST;
@@ -44,14 +43,14 @@ pub(crate) struct JointScratch {
 }
 
 /// The estimate before it is calibrated.
-pub(crate) fn raw(seen: &Seen, scratch: &mut JointScratch) -> Found {
-    let largest = magnitude(seen.b);
-    search(Grid::SEARCH, seen.u, DEAD_ZONE * largest, LEVEL * seen.contact.stress_sum, &mut scratch.grid)
+pub(crate) fn raw(inputs: &Inputs, scratch: &mut JointScratch) -> Estimate {
+    let largest = magnitude(inputs.b);
+    search(Grid::SEARCH, inputs.u, DEAD_ZONE * largest, LEVEL * inputs.contact.stress_sum, &mut scratch.grid)
 }
 
 /// The features of the stress that the normal forces alone would cause at the friction `mu`, in a grid of `columns`.
 pub(crate) fn features(
-    seen: &Seen,
+    inputs: &Inputs,
     mu: [f64; 2],
     columns: usize,
     half_window: [usize; 2],
@@ -59,10 +58,10 @@ pub(crate) fn features(
     scratch: &mut JointScratch,
 ) {
     let JointScratch { normal, features, .. } = scratch;
-    let [u0, u1, u2] = seen.u;
+    let [u0, u1, u2] = inputs.u;
     normal.clear();
     normal.extend(u0.iter().zip(u1).zip(u2).map(|((u0, u1), u2)| u0 + u1 * mu[0] + u2 * mu[1]));
-    features.take(normal, columns, half_window, seen.contact.stress_sum, mu, tie);
+    features.take(normal, columns, half_window, inputs.contact.stress_sum, mu, tie);
 }
 
 /// The grid search with the constants of one design.
@@ -86,20 +85,20 @@ impl Joint {
     }
 
     /// Finds the friction components.
-    pub(crate) fn find(&self, seen: &Seen, scratch: &mut JointScratch) -> Answer {
-        let Found { status, mu } = raw(seen, scratch);
+    pub(crate) fn find(&self, inputs: &Inputs, scratch: &mut JointScratch) -> Estimate {
+        let raw @ Estimate { status, mu } = raw(inputs, scratch);
         if status.contains(Status::DIRECTION_UNKNOWN) {
-            return Answer { status, mu };
+            return raw;
         }
         let mu = match &self.network {
             None => scaled(mu, self.friction_correction),
             Some(network) => {
-                features(seen, mu, self.columns, network.half_window, TIE, scratch);
+                features(inputs, mu, self.columns, network.half_window, TIE, scratch);
                 self.corrected(mu, &scratch.features, &mut scratch.network)
             }
         };
         let (status, mu) = within(status, mu);
-        Answer { status, mu }
+        Estimate { status, mu }
     }
 
     /// The friction components for the centroid of the level set and what the network sees; not clipped.

@@ -4,7 +4,7 @@
 mod level_set;
 mod thin;
 
-use super::seen::{Contact, RANGE};
+use super::interface::{Contact, RANGE};
 use crate::status::Status;
 pub use level_set::LineScratch;
 pub(crate) use thin::thin;

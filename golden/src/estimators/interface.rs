@@ -1,4 +1,4 @@
-//! What every estimator sees of a frame, and the range of what it finds.
+//! The interface of an estimator: its inputs, its estimate, and the range of that.
 
 use crate::products::ByPq;
 use crate::status::Status;
@@ -18,9 +18,9 @@ pub struct Contact {
     pub direction: Option<[f64; 2]>,
 }
 
-/// What an estimator finds.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Answer {
+/// What an estimator finds of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Estimate {
     /// Bits to raise.
     pub(crate) status: Status,
     /// Friction components.
@@ -29,7 +29,7 @@ pub(crate) struct Answer {
 
 /// What an estimator sees of a frame; either plan has all of it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen<'a> {
+pub(crate) struct Inputs<'a> {
     /// Stress in pascals, m values.
     pub(crate) b: &'a [f64],
     pub(crate) contact: Contact,
