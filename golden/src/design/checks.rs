@@ -1,9 +1,6 @@
-//! Range and spelling checks, each with a message that says what to do.
-
-use serde::de::DeserializeOwned;
+//! Range checks, each with a message that says what to do.
 
 use super::{DesignError, Hardware};
-use crate::words;
 
 /// Makes errors that name the file.
 pub(crate) struct Check<'a> {
@@ -37,13 +34,6 @@ impl Check<'_> {
         }
     }
 
-    /// Two numbers; a TOML reader drops what is too much for a fixed array.
-    pub(crate) fn pair(&self, key: &str, values: &[f64]) -> Result<[f64; 2], DesignError> {
-        values
-            .try_into()
-            .map_err(|_| self.value(key, format!("has {} values", values.len()), "use two, for x and y".to_owned()))
-    }
-
     pub(crate) fn above_zero(&self, key: &str, value: f64, high: f64, unit: &str) -> Result<f64, DesignError> {
         if value > 0.0 && value <= high {
             Ok(value)
@@ -51,16 +41,6 @@ impl Check<'_> {
             let limit = if high < f64::MAX { format!("and at most {high} {unit}") } else { "and finite".to_owned() };
             Err(self.value(key, format!("is {value}"), format!("use a number greater than 0 {limit}")))
         }
-    }
-
-    /// The variant that a word of the file means.
-    pub(crate) fn word<T: DeserializeOwned>(&self, key: &str, found: &str) -> Result<T, DesignError> {
-        words::read(found).map_err(|unknown| DesignError::Choice {
-            origin: self.origin.to_owned(),
-            key: key.to_owned(),
-            found: found.to_owned(),
-            allowed: unknown.allowed,
-        })
     }
 }
 

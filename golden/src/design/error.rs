@@ -51,18 +51,6 @@ pub enum DesignError {
         /// What to do.
         remedy: String,
     },
-    /// A word that is not among the allowed ones.
-    #[error("{origin}: {key} is {found:?}; choose one of: {}", allowed.join(", "))]
-    Choice {
-        /// File name.
-        origin: String,
-        /// Dotted key.
-        key: String,
-        /// The word found.
-        found: String,
-        /// The words allowed.
-        allowed: &'static [&'static str],
-    },
 }
 
 fn near(context: &str) -> String {

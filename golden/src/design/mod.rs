@@ -24,7 +24,7 @@ mod regularisation;
 mod resolve;
 mod rows;
 mod rules;
-mod schema;
+pub(crate) mod schema;
 mod thin;
 
 use std::path::{Path, PathBuf};

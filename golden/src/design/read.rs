@@ -16,7 +16,7 @@ const ALIKE: f64 = 0.7;
 pub(super) fn table(text: &str, origin: &str) -> Result<Table, DesignError> {
     let table = toml::from_str(text).map_err(|error| syntax_position(&error, text, origin))?;
     old_format::refuse(origin, &table)?;
-    schema::check(origin, &table)?;
+    schema::check(origin, &table, schema::design_schema())?;
     Ok(table)
 }
 

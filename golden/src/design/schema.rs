@@ -1,7 +1,8 @@
-//! The JSON schema of design files, and the range checks by it.
+//! The JSON schemas of design and scene files, and the range checks by them.
 
 use std::sync::LazyLock;
 
+use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value as Schema};
 use toml::{Table, Value};
@@ -10,18 +11,24 @@ use super::checks::Check;
 use super::keys::DesignKeys;
 use super::{DesignError, Sensor};
 
-static SCHEMA: LazyLock<Schema> = LazyLock::new(|| {
-    // Editors read draft 7; references would only be in the way of those who walk over the schema.
-    let settings = SchemaSettings::draft07().with(|settings| settings.inline_subschemas = true);
-    let mut schema = settings.into_generator().into_root_schema_for::<DesignKeys>().to_value();
-    tidy(&mut schema);
+static DESIGN: LazyLock<Schema> = LazyLock::new(|| {
+    let mut schema = of::<DesignKeys>();
     schema["title"] = "Design file of sptfra".into();
     schema
 });
 
+/// The schema of a file's keys.
+pub(crate) fn of<Keys: JsonSchema>() -> Schema {
+    // Editors read draft 7; references would only be in the way of those who walk over the schema.
+    let settings = SchemaSettings::draft07().with(|settings| settings.inline_subschemas = true);
+    let mut schema = settings.into_generator().into_root_schema_for::<Keys>().to_value();
+    tidy(&mut schema);
+    schema
+}
+
 /// The JSON schema of a design file, draft 7, for editors: a design begins with `#:schema FILE`.
 pub fn design_schema() -> &'static Schema {
-    &SCHEMA
+    &DESIGN
 }
 
 /// Takes out nulls, which TOML does not have, and the line ends of doc comments.
@@ -65,14 +72,14 @@ impl Sensor {
     /// The sensor, if it is in the ranges of a design's.
     pub(crate) fn checked(self, origin: &str) -> Result<Self, DesignError> {
         let keys = Table::try_from(&self).unwrap_or_default();
-        check_table(&Check { origin }, "sensor", &keys, &SCHEMA["properties"]["sensor"])?;
+        check_table(&Check { origin }, "sensor", &keys, &DESIGN["properties"]["sensor"])?;
         Ok(self)
     }
 }
 
 /// Checks numbers and the lengths of arrays. Values of another type are left to the parser, which knows their line.
-pub(super) fn check(origin: &str, file: &Table) -> Result<(), DesignError> {
-    check_table(&Check { origin }, "", file, &SCHEMA)
+pub(crate) fn check(origin: &str, file: &Table, schema: &Schema) -> Result<(), DesignError> {
+    check_table(&Check { origin }, "", file, schema)
 }
 
 fn check_table(check: &Check, path: &str, table: &Table, schema: &Schema) -> Result<(), DesignError> {
@@ -147,6 +154,6 @@ fn check_number(check: &Check, key: &str, value: &Value, schema: &Schema) -> Res
 /// The unit that the end of a key names.
 fn unit(key: &str) -> &'static str {
     let name = key.split('[').next().unwrap_or(key);
-    let units = [("_mm", "mm"), ("_pa", "Pa"), ("_mhz", "MHz")];
+    let units = [("_mm", "mm"), ("_pa", "Pa"), ("_mhz", "MHz"), ("_n", "N"), ("_deg", "degrees")];
     units.into_iter().find(|(ending, _)| name.ends_with(ending)).map_or("", |(_, unit)| unit)
 }

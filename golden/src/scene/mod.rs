@@ -6,9 +6,9 @@ mod bessel;
 mod choice;
 mod field;
 mod green;
+mod keys;
 mod kind;
 mod parse;
-mod parse_contact;
 mod sensor_errors;
 mod shape;
 mod spectral;
@@ -208,23 +208,17 @@ impl Scene {
     fn unit_responses(&self, index: usize, contact: &Contact) -> Result<UnitResponses, SceneError> {
         let sensor = &self.sensor;
         let depth = sensor.depth_m();
-        let offset = |taxel: usize| {
-            let position = sensor.position_m(taxel);
-            [0, 1].map(|axis| position[axis] - contact.centre_m[axis])
-        };
         if self.medium == Medium::HalfSpace {
-            let stresses: Option<Vec<_>> =
-                (0..sensor.taxels()).map(|taxel| contact.shape.half_space(offset(taxel), depth)).collect();
+            let stress = |taxel| {
+                let position = sensor.position_m(taxel);
+                contact.shape.half_space([0, 1].map(|axis| position[axis] - contact.centre_m[axis]), depth)
+            };
+            let stresses: Option<Vec<_>> = (0..sensor.taxels()).map(stress).collect();
             if let Some(stresses) = stresses {
                 return Ok([0, 1, 2].map(|load| stresses.iter().map(|stress| stress[load]).collect()));
             }
         }
-        let offsets = [
-            (0..sensor.columns).map(|ix| offset(ix)[0]).collect(),
-            (0..sensor.rows).map(|iy| offset(iy * sensor.columns)[1]).collect(),
-        ];
-        spectral::responses(self.medium, contact.shape, depth, &offsets, Resolution::fine(self.medium))
-            .map_err(|waves| SceneError::TooFine { contact: index + 1, depth_mm: sensor.depth_mm, waves })
+        spectral_responses(sensor, self.medium, (index, contact), Resolution::fine(self.medium))
     }
 
     fn combine(&self, responses: &[Stress<'_>], sweep_deg: Option<f64>) -> SceneFrame {
@@ -303,12 +297,22 @@ enum Stress<'a> {
 ///
 /// [`SceneError::TooFine`], as [`Scene::frames`].
 pub(crate) fn unit_responses(sensor: &Sensor, medium: Medium, contact: &Contact) -> Result<UnitResponses, SceneError> {
+    spectral_responses(sensor, medium, (0, contact), Resolution::COARSE)
+}
+
+/// Responses of all taxels to a unit contact and its number, by the spectrum of its load.
+fn spectral_responses(
+    sensor: &Sensor,
+    medium: Medium,
+    (index, contact): (usize, &Contact),
+    resolution: Resolution,
+) -> Result<UnitResponses, SceneError> {
     let offsets = [
         (0..sensor.columns).map(|ix| sensor.position_m(ix)[0] - contact.centre_m[0]).collect(),
         (0..sensor.rows).map(|iy| sensor.position_m(iy * sensor.columns)[1] - contact.centre_m[1]).collect(),
     ];
-    spectral::responses(medium, contact.shape, sensor.depth_m(), &offsets, Resolution::COARSE)
-        .map_err(|waves| SceneError::TooFine { contact: 1, depth_mm: sensor.depth_mm, waves })
+    spectral::responses(medium, contact.shape, sensor.depth_m(), &offsets, resolution)
+        .map_err(|waves| SceneError::TooFine { contact: index + 1, depth_mm: sensor.depth_mm, waves })
 }
 
 /// Cosine of an angle in degrees; exact where the cosine is 0 or 1, so that a push along an axis has no trace of the
