@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::design::Design;
 use crate::frames::Frames;
-use crate::numbers::{magnitude, middle, rounded};
+use crate::numbers::{counted, magnitude, middle, rounded};
 
 /// Frames that a time constant has at least and at most: the hardware's fixed point holds these.
 pub const FRAMES: [f64; 2] = [2.0, 131_072.0];
@@ -168,8 +168,8 @@ pub fn interval(times: &[f64]) -> Result<f64, String> {
     }
 }
 
-/// Finds strength and time constant from a step of load: `sums` are those of each frame's stresses in any unit, `seconds`
-/// apart, from a time without load on.
+/// Finds strength and time constant from a step of load. `sums` are those of each frame's stresses in any unit, `seconds`
+/// apart; the first frames have no load.
 ///
 /// # Errors
 ///
@@ -193,8 +193,9 @@ pub fn fit(sums: &[f64], seconds: f64) -> Result<Fitted, String> {
     let held: Vec<f64> = sums[settled..end].iter().map(|sum| (sum - level).abs()).collect();
     if begin == 0 || held.len() < FEWEST {
         return Err(format!(
-            "{begin} frames without load, then {} of constant load: begin without, put a weight down within {SETTLES} s, \
+            "{} without load, then {} of constant load: begin without, put a weight down within {SETTLES} s, \
              and leave it for a minute",
+            counted(begin, "frame"),
             held.len()
         ));
     }

@@ -6,9 +6,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::calibrate::recorded::{Measured, read_forces};
+use crate::calibrate::recorded::{self, Measured};
 use crate::contacts::{ContactForces, MOST};
-use crate::frames::{self, FrameError};
+use crate::frames::{self, FrameError, Numbers, Table};
 use crate::geometry::{self, GeometryError, OtherSensor};
 use crate::metrics::Outcome;
 use crate::output;
@@ -141,20 +141,19 @@ pub fn push_line(text: &mut String, row: &[f64]) {
 }
 
 /// Reads the resultants, friction and direction of a force file of `frames` lines: one of [`row`], or any table of measured
-/// `F_x`, `F_y` and `F_z` that [`read_forces`] reads, where a positive `F_z` presses if most are positive.
+/// `F_x`, `F_y` and `F_z` that [`recorded::read_forces`] reads, where a positive `F_z` presses if most are positive.
 ///
 /// # Errors
 ///
 /// [`FrameError`], with file, line and column, for a line that is too short or holds something else than finite
 /// numbers, for a file with another number of lines, and for one of something else.
 pub fn read_outcomes(path: &Path, frames: usize) -> Result<Vec<Outcome>, FrameError> {
-    let own = read_rows(path, frames);
-    let is_named = frames::first_line(path)?.is_some_and(|line| {
-        let name = line.trim_start_matches('"');
-        name.starts_with(char::is_alphabetic) && !name.starts_with("status")
-    });
+    let text = frames::text(path)?;
+    let table = recorded::table(path, &text)?;
+    let own = own_rows(path, &table, frames);
+    let is_named = table.names.first().is_some_and(|name| !name.starts_with("status"));
     if is_named || matches!(own, Err(FrameError::Length { .. })) {
-        match (read_forces(path), &own) {
+        match (recorded::forces(path, &table), &own) {
             (Err(_), Err(_)) => {}
             (Err(error), Ok(_)) => return Err(unusable(path, 1, error.to_string())),
             (Ok(measured), _) => match measured_outcomes(path, frames, &measured) {
@@ -206,11 +205,10 @@ pub fn read_contacts(
     frames: usize,
     sensor: &Sensor,
 ) -> Result<Option<Vec<Vec<ContactForces>>>, FrameError> {
-    let rows = read_rows(path, frames)?;
-    let (records, torques) = if let Some(line) = frames::first_line(path)? {
-        let count = |of: &str| line.split([',', ';', '\t', ' ']).filter(|name| is_contact_column(name, of)).count();
-        (count("_F_z"), count("_T_z"))
-    } else {
+    let text = frames::text(path)?;
+    let table = recorded::table(path, &text)?;
+    let rows = own_rows(path, &table, frames)?;
+    let (records, torques) = if table.names.is_empty() {
         let more = rows.first().map_or(0, |row| row.len().saturating_sub(SUMMARY.len()));
         let all = OF_CONTACT.len() + TORQUE_OF_CONTACT.len();
         match [more / all, more / OF_CONTACT.len()] {
@@ -218,6 +216,11 @@ pub fn read_contacts(
             [_, records] if more == records * OF_CONTACT.len() && records <= MOST => (records, 0),
             _ => (0, 0),
         }
+    } else {
+        let of_contacts = || table.names.iter().filter_map(|name| name.strip_prefix(CONTACT));
+        let count =
+            |of: &str| of_contacts().filter(|name| name.split(' ').next().unwrap_or(name).ends_with(of)).count();
+        (count("_F_z"), count("_T_z"))
     };
     let contacts = |row: &Vec<f64>| match row.get(SUMMARY.len()..) {
         Some(rest) if records > 0 => {
@@ -239,15 +242,6 @@ pub fn read_contacts(
     Ok(rows.iter().map(contacts).collect())
 }
 
-fn unquoted(name: &str) -> &str {
-    name.trim().trim_matches('"')
-}
-
-/// Whether a column has this of a contact, such as `_F_z`.
-fn is_contact_column(name: &str, of: &str) -> bool {
-    unquoted(name).strip_prefix(CONTACT).and_then(|rest| rest.strip_suffix(of)).is_some()
-}
-
 /// The contact of a record's columns.
 fn contact(&[taxels, status, x, y, fx, fy, fz, mu, standard_error]: &[f64; 9]) -> ContactForces {
     let (taxels, status) = (taxels as usize, Status(status as u32));
@@ -262,17 +256,38 @@ fn contact(&[taxels, status, x, y, fx, fy, fz, mu, standard_error]: &[f64; 9]) -
     }
 }
 
-/// The lines of a force file, each long enough.
-fn read_rows(path: &Path, frames: usize) -> Result<Vec<Vec<f64>>, FrameError> {
-    let header = frames::first_line(path)?.unwrap_or_default();
-    if header.split([',', ';', '\t', ' ']).any(|name| unquoted(name).starts_with("body0_")) {
+/// The rows of a force file, each long enough.
+fn own_rows(path: &Path, table: &Table<'_>, frames: usize) -> Result<Vec<Vec<f64>>, FrameError> {
+    if table.names.iter().any(|name| name.contains("body0_")) {
         return Err(FrameError::Format {
             path: path.to_path_buf(),
             what: "a force file of an older version, whose columns body0_taxels, body0_status … number contacts from 0",
             remedy: "rename these columns contact1_taxels, contact1_status …, numbered from 1, or write the file anew",
         });
     }
-    let rows = frames::read_rows(path, |found| (found < NEEDED).then_some(NEEDED))?;
+    let mut numbers = Numbers::new(path);
+    let mut row = |&(line, ref cells): &(usize, Vec<&[u8]>)| -> Result<Vec<f64>, FrameError> {
+        let found = cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
+        let mut row = Vec::with_capacity(found);
+        for (index, cell) in cells[..found].iter().enumerate() {
+            let column = index + 1;
+            let number = numbers.of(cell, table.separator, [line, column])?.filter(|number| number.is_finite());
+            row.push(number.ok_or_else(|| FrameError::Value {
+                path: path.to_path_buf(),
+                line,
+                column,
+                text: String::from_utf8_lossy(cell).chars().take(40).collect(),
+                remedy: "give a number in newtons or radians".to_owned(),
+            })?);
+        }
+        if found < NEEDED {
+            let hint = "give a line of forces for each frame".to_owned();
+            return Err(FrameError::Length { path: path.to_path_buf(), line, found, expected: NEEDED, hint });
+        }
+        Ok(row)
+    };
+    let rows = table.rows.iter().map(&mut row).collect::<Result<Vec<_>, _>>()?;
+    numbers.end()?;
     if rows.len() != frames {
         return Err(FrameError::Count { path: path.to_path_buf(), found: rows.len(), expected: frames });
     }

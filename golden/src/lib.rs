@@ -43,7 +43,7 @@ pub mod matrices;
 pub mod metrics;
 pub mod missing_file;
 pub mod names;
-mod numbers;
+pub mod numbers;
 pub mod output;
 pub mod parity;
 pub mod products;

@@ -20,6 +20,11 @@ pub(crate) fn middle(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
     sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
 }
 
+/// So many of a thing: "1 frame", "2 frames".
+pub fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
 /// Correlation of the values in pairs; 0 where either are all the same.
 pub(crate) fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
     let [count, a, b] = pairs.clone().fold([0.0; 3], |[count, a, b], (x, y)| [count + 1.0, a + x, b + y]);

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::check::{holds, together};
 use crate::dead_taxels::MOST_DEAD;
 use crate::design::{Calibration, Design};
-use crate::numbers::{magnitude, middle as median};
+use crate::numbers::{counted, magnitude, middle as median};
 
 /// So few frames tell no deviation.
 const FRAMES: usize = 10;
@@ -34,7 +34,7 @@ const LOADED: f64 = 0.1;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RestError {
     /// Too few frames.
-    #[error("{0} frames without load are too few to measure noise: record {FRAMES} at least, better 200")]
+    #[error("{} without load: too few to measure noise: record {FRAMES} at least, better 200", counted(*.0, "frame"))]
     Few(usize),
     /// Offsets of readings in pascals.
     #[error(

@@ -54,6 +54,17 @@ pub(crate) fn pascals(unit: &str) -> Option<f64> {
     force_or_pressure(unit).and_then(|(pascals, is_pressure)| is_pressure.then_some(pascals))
 }
 
+/// What a unit measures that is certainly no pressure.
+pub(crate) fn no_pressure(unit: &str) -> Option<&'static str> {
+    match unit.to_lowercase().as_str() {
+        "v" | "mv" | "uv" | "µv" | "volt" | "volts" => Some("a voltage"),
+        "ohm" | "ohms" | "kohm" | "ω" | "kω" | "mω" => Some("a resistance"),
+        "pf" | "nf" | "ff" => Some("a capacitance"),
+        "raw" | "adc" | "count" | "counts" | "lsb" | "digit" | "digits" => Some("a count"),
+        _ => force_or_pressure(unit).and_then(|(_, is_pressure)| (!is_pressure).then_some("a force")),
+    }
+}
+
 /// Newtons or pascals of a unit, and whether it is one of pressure.
 pub(crate) fn force_or_pressure(unit: &str) -> Option<(f64, bool)> {
     let lower = unit.to_lowercase().replace('²', "2").replace('^', "");

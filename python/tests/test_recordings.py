@@ -62,7 +62,7 @@ class Judging(unittest.TestCase):
         self.assertEqual(status, [False, True], "offsets are a contact, and none any more")
         self.assertEqual(gains[:, 0].tolist(), alive.astype(float).tolist())
         self.assertLess(abs(gains[alive, 1] + found.offset.ravel()[alive]).max(), 1e-9)
-        with self.assertRaisesRegex(sptfra.Error, "3 frames without load are too few"):
+        with self.assertRaisesRegex(sptfra.Error, "3 frames without load: too few"):
             sptfra.rest(counting, frames[:3])
 
     def test_numbers_of_columns_are_a_header(self):
@@ -73,7 +73,7 @@ class Judging(unittest.TestCase):
             with self.assertWarnsRegex(UserWarning, "line 1: numbers up to 11"):
                 self.assertEqual(sptfra.load_frames(file, design()).shape, (1, 3, 4))
             file.write_text(f"anything: 5\n{line},99\n{line},--\n{line.replace('-', 'x', 1)},99\n", encoding="utf-8")
-            with self.assertWarnsRegex(UserWarning, "1 frames are left out"):
+            with self.assertWarnsRegex(UserWarning, "1 frame left out"):
                 found, bad = sptfra.load_frames(file, design(), columns=(1, 12), skip_lines=1, skip_bad=True)
             self.assertEqual((found.shape, bad), ((2, 3, 4), [2]))
         lines = sptfra.FrameLines(design())

@@ -10,6 +10,7 @@ use golden::choose::rebase_scenes;
 use golden::creep::{self, Creep};
 use golden::design::{Design, Filter};
 use golden::matrices::Matrices;
+use golden::numbers::counted;
 use golden::output::write_together;
 use golden::progress::Progress;
 use golden::resolved::{Resolved, folder, keep_apart};
@@ -292,8 +293,8 @@ fn text(report: &Report<'_>) -> String {
     for (what, found) in [("uniform pressure", report.uniform), ("contacts", report.forces)] {
         let Some(found) = found else { continue };
         match found.holds.len() {
-            0 => say!(text, "from {what}: {} contacts", found.contacts),
-            holds => say!(text, "from {what}: {holds} holds, {} contacts", found.contacts),
+            0 => say!(text, "from {what}: {}", counted(found.contacts, "contact")),
+            holds => say!(text, "from {what}: {}, {}", counted(holds, "hold"), counted(found.contacts, "contact")),
         }
         for (title, lines) in [
             ("determined", &found.determined),

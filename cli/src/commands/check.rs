@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use golden::check::{Beyond, Finding, beyond, check, is_unloaded};
 use golden::design::Design;
 use golden::matrices::Matrices;
+use golden::numbers::counted;
 use golden::progress::Progress;
 use serde::Serialize;
 
@@ -92,7 +93,7 @@ pub fn run(args: &Args) -> message::Result {
             say!(text, "{finding}");
         }
         if findings.is_empty() {
-            say!(text, "{}: {} frames of {file}, nothing suspicious", design.name, frames.len());
+            say!(text, "{}: {} of {file}, nothing suspicious", design.name, counted(frames.len(), "frame"));
             if is_unloaded(&design, &frames) {
                 let floor = design.algorithm.noise_floor_pa;
                 say!(text, "Nothing presses: tare and noise are within algorithm.noise_floor_pa = {floor}");

@@ -24,7 +24,7 @@ pub struct Args {
     #[command(flatten)]
     frames: FrameArguments,
     /// True forces of the frames (CSV of `sptfra scene`), to report the errors.
-    #[arg(long, requires = "frames")]
+    #[arg(long, value_name = "FORCES.csv", requires = "frames")]
     reference: Option<PathBuf>,
     /// Write all signals of the free-running mode (FST or VCD); default: NAME.fst.
     ///

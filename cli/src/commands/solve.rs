@@ -6,6 +6,7 @@ use golden::check::check;
 use golden::design::Design;
 use golden::forces;
 use golden::metrics::{ContactErrors, ERROR_NAMES, ErrorSummary, Outcome, Quantiles};
+use golden::numbers::counted;
 use golden::progress::Progress;
 use golden::resolved::keep_apart;
 use golden::solver::{Solution, Solver, Status};
@@ -145,7 +146,7 @@ fn count_statuses(solutions: &[Solution]) -> Vec<StatusCount> {
 
 fn text(report: &SolveReport<'_>) -> String {
     let mut text = String::new();
-    say!(text, "{}: forces of {} frames in {}", report.design, report.frames, report.forces_file.display());
+    say!(text, "{}: forces of {} in {}", report.design, counted(report.frames, "frame"), report.forces_file.display());
     for count in &report.status_counts {
         say!(text, "  {:>6} frames: {}", count.frames, count.meaning);
     }

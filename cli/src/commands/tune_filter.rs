@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use golden::choose::{Choice, candidate_count, choose, rebase_scenes, reference_frames};
 use golden::design::{Design, Filter};
+use golden::numbers::counted;
 use golden::output::write_together;
 use golden::progress::Progress;
 use golden::resolved::{Resolved, folder, keep_apart};
@@ -130,7 +131,7 @@ fn text(name: &str, out: &Path, choice: &Choice) -> String {
     table.row(whole("all together", choice.nnz_chosen.to_string(), choice.e_mu_chosen));
     table.row(whole("without a filter", String::new(), choice.e_mu_unfiltered));
     let mut text = String::new();
-    say!(text, "{name}: filters chosen by {} frames\n{}", choice.frames, table.text(0, 0));
+    say!(text, "{name}: filters chosen by {}\n{}", counted(choice.frames, "frame"), table.text(0, 0));
     say!(text, "the resolved design is {}", out.display());
     text
 }

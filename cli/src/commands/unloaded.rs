@@ -4,6 +4,7 @@ use std::path::Path;
 
 use golden::check::{Beyond, beyond};
 use golden::design::{Design, Expected, MAX_NOISE};
+use golden::numbers::counted;
 use golden::output::write_whole;
 use golden::resolved::{folder, keep_apart};
 use golden::rest::AtRest;
@@ -73,7 +74,7 @@ pub fn run(
     }
     let mut text = String::new();
     let counts = if design.input.counts() { "counts" } else { "Pa" };
-    say!(text, "{}: {} frames of {} without load", design.name, frames.len(), recording.file.display());
+    say!(text, "{}: {} of {} without load", design.name, counted(frames.len(), "frame"), recording.file.display());
     say!(
         text,
         "In {counts}: the median taxel varies by {:.2} and drifts by {:.2}; all of them with --json",

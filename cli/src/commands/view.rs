@@ -35,7 +35,7 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["json", "svg"])]
     compact: bool,
     /// True forces of the frames (CSV), for a picture.
-    #[arg(long, requires = "svg", requires = "frames")]
+    #[arg(long, value_name = "FORCES.csv", requires = "svg", requires = "frames")]
     reference: Option<PathBuf>,
     /// Draw stress and forces of one frame into this file instead.
     #[arg(long, value_name = "FILE", conflicts_with = "json")]

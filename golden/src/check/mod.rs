@@ -25,7 +25,7 @@ pub(crate) use quiet::together;
 
 use crate::design::{Design, Tension};
 use crate::matrices::Matrices;
-use crate::numbers::magnitude;
+use crate::numbers::{counted, magnitude};
 use crate::words::print_as_words;
 
 /// What a finding is about.
@@ -295,5 +295,5 @@ pub(crate) fn holds(frames: usize, of: usize) -> bool {
 }
 
 fn count(frames: usize) -> String {
-    if frames == 1 { "1 frame".to_owned() } else { format!("{frames} frames") }
+    counted(frames, "frame")
 }

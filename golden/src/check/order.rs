@@ -127,8 +127,8 @@ pub(super) fn axes(sensor: &Sensor, frames: &[Vec<f64>]) -> Option<String> {
     ))
 }
 
-/// Whether a file of as many frames as taxels has a line for each taxel: along the frames' axis, not along the taxels', those
-/// that are a row of the grid apart are alike.
+/// Whether a file of as many frames as taxels has a line for each taxel. Taxels that are a row of the grid apart are alike,
+/// here along the frames' axis.
 pub(super) fn swapped(sensor: &Sensor, frames: &[Vec<f64>]) -> Option<String> {
     let (taxels, columns) = (sensor.taxels(), sensor.columns);
     if frames.len() != taxels || columns < 4 || sensor.rows < 3 {

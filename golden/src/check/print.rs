@@ -12,8 +12,8 @@ const WHOLE: f64 = 0.9;
 /// and what lessens it leaves at most this share.
 const LESS: f64 = 0.5;
 
-/// A message where the loaded frame that pulls most is the negative of another, in pascals, or where the print is what a
-/// recording begins or ends with.
+/// A message where the loaded frame that pulls most is the negative of another, in pascals. So is one that a recording begins
+/// or ends with.
 pub(super) fn check(design: &Design, stress: &[Vec<f64>]) -> Option<String> {
     let pull = |frame: &[f64]| frame.iter().sum::<f64>();
     let peak = stress.iter().map(|frame| largest(frame)).fold(0.0, f64::max);

@@ -8,6 +8,7 @@ use std::path::Path;
 use super::layout::{Layout, Target};
 use super::text::{Lines, Text};
 use super::{FrameError, header};
+use crate::numbers::counted;
 use crate::sensor::Sensor;
 use crate::separator::{self, Separator, is_unknown, no_number};
 use crate::units::pascals;
@@ -26,27 +27,31 @@ pub(super) struct Blocks {
     frames: Vec<(usize, Result<Vec<u8>, FrameError>)>,
     /// What separates them.
     separator: u8,
+    /// Columns before the values of a row.
+    labels: usize,
     /// What else stands in the lines, in words.
     beside: &'static str,
-    /// The unit that the header names.
-    unit: Option<String>,
+    /// The unit that the header names, and its line.
+    unit: Option<(usize, String)>,
 }
 
 impl Blocks {
     /// The frames.
-    pub(super) fn read(
-        self,
-        mut lines: Lines,
-        target: &Target,
-        wrong_length: impl Fn(usize) -> Option<usize>,
-    ) -> Result<Text, FrameError> {
+    pub(super) fn read(self, mut lines: Lines, target: &Target) -> Result<Text, FrameError> {
         let Sensor { columns, rows, .. } = target.sensor;
-        let (unit, remark) = self.unit.as_ref().map_or((None, None), |unit| header::worth(unit, target, -1.0));
-        let path = lines.path().display().to_string();
+        let path = lines.cells.path.display().to_string();
+        let (unit, remark) = match self.unit {
+            Some((line, unit)) => header::worth(&unit, target, -1.0).map_err(|problem| FrameError::Shape {
+                path: lines.cells.path.clone(),
+                line,
+                problem,
+            })?,
+            None => (None, None),
+        };
         let mut text = Text::default();
         for (line, frame) in self.frames {
-            lines.begin_block(line, columns, unit, self.separator);
-            let row = frame.and_then(|frame| lines.row(&frame, &wrong_length));
+            lines.begin_block(line, [columns, self.labels], unit, self.separator);
+            let row = frame.and_then(|frame| lines.row(&frame));
             if let Some(row) = row.or_else(|error| lines.leave_out(line, error))? {
                 text.rows.push(row);
                 text.lines.push(line);
@@ -67,24 +72,25 @@ pub(super) fn join<'a>(
     target: &Target,
 ) -> Result<Option<Blocks>, FrameError> {
     let (columns, rows) = (target.sensor.columns, target.sensor.rows);
+    let end = layout.columns.map(|[_, last]| last);
     let behind = |labels: usize| -> Vec<Line<'a>> {
         let of = |(index, line): (usize, &'a [u8])| {
             let content = Separator::of(line.trim_ascii()).trim(line);
-            Line { number: index + 1, content, row: row(content, columns, labels) }
+            Line { number: index + 1, content, row: row(content, columns, labels, end) }
         };
         separator::lines(bytes).enumerate().skip(layout.skip_lines).map(of).collect()
     };
     let of_length = |all: &[Line], length: usize| {
         all.iter().filter(|line| line.row.as_ref().is_some_and(|row| row.len() == length)).count()
     };
-    let mut all = behind(layout.labels);
+    let mut all = behind(layout.first());
     if rows == 1 || of_length(&all, target.sensor.taxels()) > 0 {
         return Ok(None);
     }
     let wrong = |line: usize, problem: String| FrameError::Shape { path: path.to_path_buf(), line, problem };
     // Numbers of the columns above frames, as pandas writes them: without them the rows are whole frames.
     let numbers = Sensor { rows: 1, ..target.sensor.clone() };
-    let may_be_labelled = layout.labels == 1 || layout.labels == 0 && of_length(&all, columns) == 0;
+    let may_be_labelled = end.is_none() && (layout.labels == 1 || layout.labels == 0 && of_length(&all, columns) == 0);
     let labelled = may_be_labelled.then(|| behind_labels(behind(1), &numbers, rows)).flatten();
     let is_labelled = labelled.is_some();
     all = labelled.unwrap_or(all);
@@ -131,8 +137,9 @@ pub(super) fn join<'a>(
                     format!("the file ends within a frame, after {} of {rows} rows", found % rows)
                 } else {
                     format!(
-                        "a block of {found} rows ends here where the sensor has {rows}; skip lines above the first frame \
-                         with --skip-lines N, or leave such frames out with --skip-bad"
+                        "a block of {} ends here where the sensor has {rows}; skip lines above the first frame with \
+                         --skip-lines N, or leave such frames out with --skip-bad",
+                        counted(found, "row")
                     )
                 };
                 // A row too many is that of a single block.
@@ -156,12 +163,15 @@ pub(super) fn join<'a>(
         (false, true) => ", below numbers of the columns",
         (true, _) => ", behind labels of the rows",
     };
-    Ok(Some(Blocks { frames, separator, beside, unit }))
+    let labels = if is_labelled { 1 } else { layout.first() };
+    Ok(Some(Blocks { frames, separator, labels, beside, unit }))
 }
 
-/// The fields of a line behind so many labels, if they are nothing but numbers and readings that are not there.
-fn row(line: &[u8], columns: usize, labels: usize) -> Option<Vec<&[u8]>> {
-    let fields = Separator::of(line).at_most(columns + labels, line).get(labels..)?.to_vec();
+/// The fields of a line behind so many labels and up to a last column, if they are nothing but numbers and readings that are
+/// not there.
+fn row(line: &[u8], columns: usize, labels: usize, end: Option<usize>) -> Option<Vec<&[u8]>> {
+    let fields = Separator::of(line).at_most(columns + labels, line);
+    let fields = fields.get(labels..end.unwrap_or(fields.len()))?.to_vec();
     let is_number = |field: &&[u8]| separator::number(field).is_some_and(f64::is_finite);
     let is_reading = |field: &&[u8]| separator::number(field).is_some() || is_unknown(&String::from_utf8_lossy(field));
     (fields.iter().all(is_reading) && fields.iter().any(is_number)).then_some(fields)
@@ -197,15 +207,16 @@ fn behind_labels<'a>(mut lines: Vec<Line<'a>>, numbers: &Sensor, rows: usize) ->
 }
 
 /// The unit that a line of words above the frames names: a known one, or else the word behind "unit".
-fn unit(lines: &[Line]) -> Option<String> {
-    let words = lines.iter().take_while(|line| line.row.as_ref().is_none_or(|row| row.len() < 2));
-    words.map(|line| String::from_utf8_lossy(line.content)).find_map(|text| {
+fn unit(lines: &[Line]) -> Option<(usize, String)> {
+    let mut words = lines.iter().take_while(|line| line.row.as_ref().is_none_or(|row| row.len() < 2));
+    words.find_map(|line| {
+        let text = String::from_utf8_lossy(line.content);
         let is_unit = |word: &&str| ["unit", "einheit"].iter().any(|unit| word.to_lowercase().contains(unit));
         let mut words =
             text.split([' ', '\t', ':', '=', ',', ';', '"', '(', ')', '[', ']']).filter(|word| !word.is_empty());
         words.find(is_unit)?;
         let behind: Vec<&str> = words.collect();
         let unit = behind.iter().find(|word| pascals(word).is_some()).or(behind.first())?;
-        Some(unit.replace(char::is_control, ""))
+        Some((line.number, unit.replace(char::is_control, "")))
     })
 }

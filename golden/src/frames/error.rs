@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::design::Samples;
 use crate::geometry::GeometryError;
+use crate::numbers::counted;
 use crate::output::OutputError;
 use crate::separator::Unclear;
 
@@ -156,8 +157,8 @@ pub enum FrameError {
     },
     /// A force file that does not belong to the frames.
     #[error(
-        "{}: forces of {found} frames where there are {expected}; give the file that was made with these frames",
-        path.display()
+        "{}: forces of {} where there are {expected}; give the file that was made with these frames",
+        path.display(), counted(*found, "frame")
     )]
     Count {
         /// The file.

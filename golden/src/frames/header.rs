@@ -2,20 +2,22 @@
 
 use super::Clock;
 use super::layout::{Layout, Target};
-use crate::numbers::sorted;
+use crate::numbers::{correlation, rounded, sorted};
 use crate::sensor::Sensor;
 use crate::separator;
-use crate::units::{pascals, seconds, unit_of_time};
+use crate::units::{force_or_pressure, no_pressure, pascals, seconds, unit_of_time};
 
 /// So few numbers in turn may be a frame: no sensor has fewer taxels.
 const FEWEST_NUMBERED: usize = 4;
 /// So few numbers in any order may be a frame, if no word stands beside them.
 const FEWEST_ALONE: usize = 6;
 
+/// Correlation of a frame with the next one, at least: taxels differ by more than their noise.
+const ALIKE: f64 = 0.98;
+
 /// The names of the columns, and what they say.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Header {
-    /// Of all lines of the header: a unit stands in brackets behind its name.
     names: Vec<String>,
     /// First and last column of the values, from 1, where names say so.
     pub(super) columns: Option<[usize; 2]>,
@@ -33,20 +35,12 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// The header with one more line, whose fields are numbers, names or units.
+    /// The header of names, at this line.
     ///
     /// # Errors
     ///
     /// What is wrong with names that leave open which columns are the taxels.
-    pub(super) fn with(&self, line: usize, fields: &[&[u8]], target: &Target, layout: &Layout) -> Result<Self, String> {
-        let mut names: Vec<String> = fields.iter().map(|field| decoded(field)).collect();
-        for (name, above) in names.iter_mut().zip(&self.names) {
-            *name = match separator::number(name.as_bytes()) {
-                Some(_) => format!("{above} {name}"),
-                None => format!("{above} ({})", name.trim_matches(['(', ')', '[', ']', '{', '}'])),
-            };
-        }
-        let line = if self.names.is_empty() { line } else { self.line };
+    pub(super) fn of(line: usize, names: Vec<String>, target: &Target, layout: &Layout) -> Result<Self, String> {
         let mut header = Self { names, line, ..Self::default() };
         header.columns(target, layout)?;
         let (names, taxels) = (&header.names, target.sensor.taxels());
@@ -88,7 +82,7 @@ impl Header {
             ));
         }
         if !unit.is_empty() && units().all(|other| other == unit) {
-            let (worth, remark) = worth(unit, target, 1.0);
+            let (worth, remark) = worth(unit, target, 1.0)?;
             header.unit = worth;
             header.remarks.extend(remark);
         }
@@ -198,8 +192,10 @@ pub(super) fn is_numbered(fields: &[&[u8]], sensor: &Sensor, alone: bool) -> boo
     sorted[0] < 2 && (is_grid || is_each && (!alone || numbers.len() >= FEWEST_ALONE || numbers.is_sorted()))
 }
 
-/// Which of these rows are a header of whole numbers that ascend, or that stand behind a word where others have a number: the
-/// first, and those that are the same between recordings. Nothing if it is a frame.
+/// Which of these rows are a header: the first, and those that are the same between recordings. Nothing if it is a frame.
+///
+/// Its whole numbers ascend, or differ and stand behind a word where others have a number. They are unlike the row below: a
+/// frame is much like the next one.
 pub(super) fn guessed(rows: &[Vec<f64>], labels: &[bool]) -> Option<Vec<bool>> {
     let first = rows.first()?;
     let again: Vec<bool> = (0..rows.len()).map(|row| rows[row] == *first && labels[row] == labels[0]).collect();
@@ -207,8 +203,10 @@ pub(super) fn guessed(rows: &[Vec<f64>], labels: &[bool]) -> Option<Vec<bool>> {
     let ascend = ascends(first) && !others().any(|row| ascends(&rows[row]));
     // Numbers of columns differ; counts of a frame often do not.
     let is_labelled = is_whole(first) && differ(first) && !labels[0] && others().all(|row| labels[row]);
-    let is_header =
-        others().next().is_some() && !again.windows(2).any(|pair| pair[0] && pair[1]) && (ascend || is_labelled);
+    let is_unlike = |row: usize| correlation(first.iter().copied().zip(rows[row].iter().copied())) < ALIKE;
+    let is_header = others().next().is_some_and(is_unlike)
+        && !again.windows(2).any(|pair| pair[0] && pair[1])
+        && (ascend || is_labelled);
     is_header.then_some(again)
 }
 
@@ -280,9 +278,24 @@ fn numbers_of(name: &str) -> Vec<usize> {
 }
 
 /// What a value is worth in pascals by the unit of a header, and what is to be said of it; `sign` is that of what presses.
-pub(super) fn worth(unit: &str, target: &Target, sign: f64) -> (Option<f64>, Option<String>) {
+///
+/// # Errors
+///
+/// What to do about a unit that is certainly no pressure.
+pub(super) fn worth(unit: &str, target: &Target, sign: f64) -> Result<(Option<f64>, Option<String>), String> {
     let gives = format!("the header gives the unit {unit}");
-    match pascals(unit).map(|pascals| sign * pascals) {
+    if let Some(what) = no_pressure(unit).filter(|_| !target.counts) {
+        let [x, y] = target.sensor.pitch_mm;
+        let remedy = match force_or_pressure(unit) {
+            Some((newtons, _)) => format!(
+                "to {}: pascals of 1 {unit} that presses on a taxel of {x} x {y} mm",
+                rounded(-newtons / (1e-6 * x * y), 4)
+            ),
+            None => format!("or sensor.curve to what 1 {unit} is worth in pascals"),
+        };
+        return Err(format!("{gives}, {what}, and the design reads pascals: set sensor.pa_per_count {remedy}"));
+    }
+    Ok(match pascals(unit).map(|pascals| sign * pascals) {
         Some(_) if target.counts => (None, Some(format!("{gives}; the design says what a value is worth"))),
         None if target.counts => (None, None),
         None => (None, Some(format!("{gives}, which is no known pressure: values are taken for pascals"))),
@@ -291,7 +304,7 @@ pub(super) fn worth(unit: &str, target: &Target, sign: f64) -> (Option<f64>, Opt
             let presses = if sign < 0.0 { "pressure presses, so that " } else { "" };
             (Some(pascals), Some(format!("{gives}; {presses}1 {unit} is {pascals} Pa")))
         }
-    }
+    })
 }
 
 /// A name without its unit, and the unit: in brackets, or a known one behind the first or the last number.
@@ -327,11 +340,4 @@ fn kind_of(name: &str) -> String {
         }
     }
     kind + unit
-}
-
-/// The text of a field: UTF-8, or else Latin-1.
-fn decoded(field: &[u8]) -> String {
-    let latin = |_| field.iter().copied().map(char::from).collect();
-    let text: String = std::str::from_utf8(field).map_or_else(latin, str::to_owned);
-    text.replace(char::is_control, " ")
 }

@@ -1,11 +1,15 @@
 //! What to do about a line of frames that cannot be read.
 
 use super::layout::{Layout, Target};
+use crate::numbers::counted;
 use crate::separator::{self, is_unknown};
 
+/// Columns beside a row of the grid, such as its number, a time and a sum.
+const BESIDE: usize = 3;
+
 /// About a field that is no number.
-pub(super) fn value(target: Option<&Target>, layout: &Layout, text: &str) -> String {
-    if is_unknown(text) && target.is_some() {
+pub(super) fn value(target: &Target, layout: &Layout, text: &str) -> String {
+    if is_unknown(text) {
         let skip = if layout.skip_bad { "" } else { ", or leave such frames out with --skip-bad" };
         return format!("name a taxel that is dead in sensor.dead{skip}");
     }
@@ -13,8 +17,8 @@ pub(super) fn value(target: Option<&Target>, layout: &Layout, text: &str) -> Str
     if behind.is_some_and(|(_, value)| separator::number(value.trim().as_bytes()).is_some()) {
         return "cut the names before the values: sed 's/[^,]*://g'".to_owned();
     }
-    let counts = target.is_some_and(|target| target.counts);
-    let what = if counts { "the sensor's count, such as 1012" } else { "the stress in pascals, such as -1250.5" };
+    let what =
+        if target.counts { "the sensor's count, such as 1012" } else { "the stress in pascals, such as -1250.5" };
     format!(
         "give {what}, separated by commas, semicolons, tabs or spaces; columns before the values need --labels, columns \
          behind them --columns FIRST-LAST, lines above them --skip-lines"
@@ -22,12 +26,20 @@ pub(super) fn value(target: Option<&Target>, layout: &Layout, text: &str) -> Str
 }
 
 /// About a line of `found` fields in place of `expected`, `labels` of them before the values.
-pub(super) fn length(target: Option<&Target>, labels: usize, found: usize, expected: usize) -> String {
-    let Some(target) = target else { return "give a line of forces for each frame".to_owned() };
-    let taxels = target.sensor.taxels();
-    let hint = match found.saturating_sub(expected) {
-        0 => String::new(),
-        more if more == taxels => format!(
+pub(super) fn length(target: &Target, labels: usize, found: usize, expected: usize) -> String {
+    let (taxels, columns) = (target.sensor.taxels(), target.sensor.columns);
+    let beside = found.checked_sub(labels + columns).filter(|beside| (1..=BESIDE).contains(beside));
+    let hint = match (found.saturating_sub(expected), beside) {
+        (0, Some(beside)) => format!(
+            "; are these rows of the grid, with {} more? Say where their {columns} values stand with --columns {}-{} or \
+             --columns {}-{found}",
+            counted(beside, "column"),
+            labels + 1,
+            labels + columns,
+            labels + beside + 1
+        ),
+        (0, _) => String::new(),
+        (more, _) if more == taxels => format!(
             "; are these decimal commas? Separate the values by semicolons. Or two arrays in a line? Say which with \
              --columns {}-{} or --columns {}-{}",
             labels + 1,
@@ -35,9 +47,10 @@ pub(super) fn length(target: Option<&Target>, labels: usize, found: usize, expec
             labels + taxels + 1,
             labels + 2 * taxels
         ),
-        more => format!(
-            "; {more} columns more than taxels, a time or a total: in front of the values? Say so with --labels {}. Behind \
-             them? With --columns {}-{}",
+        (more, _) => format!(
+            "; {} more than taxels, a time or a total: in front of the values? Say so with --labels {}. Behind them? With \
+             --columns {}-{}",
+            counted(more, "column"),
             labels + more,
             labels + 1,
             labels + taxels

@@ -40,12 +40,6 @@ pub(super) struct Target {
     pub(super) counts: bool,
 }
 
-impl From<&Sensor> for Target {
-    fn from(sensor: &Sensor) -> Self {
-        Self { sensor: sensor.clone(), dead: Vec::new(), counts: false }
-    }
-}
-
 impl From<&Design> for Target {
     fn from(design: &Design) -> Self {
         Self { sensor: design.sensor.clone(), dead: design.input.dead.clone(), counts: design.input.counts() }

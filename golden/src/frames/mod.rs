@@ -6,6 +6,7 @@
 //! of frames by taxels or frames by rows by columns.
 
 mod blocks;
+mod cells;
 mod error;
 mod format;
 mod header;
@@ -15,7 +16,8 @@ mod npy;
 mod stream;
 mod text;
 
-pub(crate) use npy::Array;
+use cells::BYTE_ORDER_MARK;
+pub(crate) use cells::{Numbers, Table};
 
 use std::fmt::Write;
 use std::path::Path;
@@ -23,10 +25,12 @@ use std::path::Path;
 pub use error::FrameError;
 pub use layout::Layout;
 use layout::Target;
+use npy::Array;
 pub use stream::FrameLines;
-use text::{BYTE_ORDER_MARK, Text};
+use text::Text;
 
 use crate::design::Design;
+use crate::numbers::counted;
 use crate::output;
 use crate::sensor::Sensor;
 
@@ -88,37 +92,23 @@ impl Frames {
     }
 }
 
-/// Reads all frames of a file; each has a finite value for each taxel of the sensor. The values stand where `layout` says: a
-/// number is that of columns of any text before them.
+/// Reads the frames of a design, with their times and what is to be said of the file; each has a value for each taxel that
+/// the design's samples can be. The values stand where `layout` says: a number is that of columns of any text before them. Of
+/// a dead taxel any text is read, as 0.
 ///
 /// # Errors
 ///
 /// [`FrameError`], with file, line and column, for the first line that is no frame, and for a `.npy` file of another shape.
-pub fn read_frames(path: &Path, sensor: &Sensor, layout: impl Into<Layout>) -> Result<Vec<Vec<f64>>, FrameError> {
-    Ok(read_text(path, &layout.into(), &sensor.into())?.rows)
-}
-
-/// The frames of a file with their lines, at least one.
-fn read_text(path: &Path, layout: &Layout, target: &Target) -> Result<Text, FrameError> {
-    let taxels = target.sensor.taxels();
-    let wrong_length = |found| (found != taxels).then_some(taxels);
-    let text = read_table(path, layout, Some(target), wrong_length, |shape| of_grid(shape, &target.sensor))?;
-    match (text.rows.is_empty(), text.remarks.is_empty()) {
-        (true, true) => Err(FrameError::Empty { path: path.to_path_buf(), expected: taxels }),
-        (true, false) => Err(FrameError::HeaderAlone { remark: text.remarks.join("; ") }),
-        (false, _) => Ok(text),
-    }
-}
-
-/// Reads the frames of a design, with their times and what is to be said of the file: as [`read_frames`], and each value is one
-/// that the design's samples can be. Of a dead taxel any text is read, as 0.
-///
-/// # Errors
-///
-/// As [`read_frames`].
 pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -> Result<Frames, FrameError> {
     let Text { rows: frames, lines, labels, header, times, skipped, remarks } =
         read_text(path, &layout.into(), &design.into())?;
+    if frames.is_empty() {
+        return Err(if remarks.is_empty() {
+            FrameError::Empty { path: path.to_path_buf(), expected: design.sensor.taxels() }
+        } else {
+            FrameError::HeaderAlone { remark: remarks.join("; ") }
+        });
+    }
     let samples = design.hardware.samples;
     let wrong = |values: &Vec<f64>| values.iter().position(|&value| !samples.takes(value));
     let found = frames.iter().enumerate().find_map(|(frame, values)| Some((frame, wrong(values)?)));
@@ -135,26 +125,11 @@ pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -
     Err(FrameError::Sample { path: path.to_path_buf(), place, value: frames[frame][column], samples })
 }
 
-/// Reads the rows of a file of finite numbers, which may have a header. `wrong_length` is given the number of values of a
-/// row and returns the number wanted if that is another.
-pub(crate) fn read_rows(
-    path: &Path,
-    wrong_length: impl Fn(usize) -> Option<usize>,
-) -> Result<Vec<Vec<f64>>, FrameError> {
-    Ok(read_table(path, &Layout::default(), None, wrong_length, |_| Ok(()))?.rows)
-}
-
-/// Reads the columns after the labels; `wrong_length` is given the number of values of a row, `check` an array's shape.
-fn read_table(
-    path: &Path,
-    layout: &Layout,
-    target: Option<&Target>,
-    wrong_length: impl Fn(usize) -> Option<usize>,
-    check: impl Fn(&[usize]) -> Result<(), String>,
-) -> Result<Text, FrameError> {
+/// The frames of a file with their lines.
+fn read_text(path: &Path, layout: &Layout, target: &Target) -> Result<Text, FrameError> {
     let wrong = |problem| FrameError::Array { path: path.to_path_buf(), problem };
     let array = match content(path)? {
-        Content::Text(bytes) => return text::read(path, &bytes, layout, target, wrong_length),
+        Content::Text(bytes) => return text::read(path, &bytes, layout, target),
         Content::Array(array) => array,
     };
     let [count, row @ ..] = array.shape.as_slice() else {
@@ -163,22 +138,22 @@ fn read_table(
     if array.values.is_empty() {
         return Err(wrong(format!("the array is empty, {:?}", array.shape)));
     }
-    check(row).map_err(wrong)?;
+    of_grid(row, &target.sensor).map_err(wrong)?;
     let length: usize = row.iter().product();
     let first = layout.first().min(length);
     let end = layout.columns.map_or(length, |[_, last]| last.clamp(first, length));
-    if let Some(expected) = wrong_length(end - first) {
+    let expected = target.sensor.taxels();
+    if end - first != expected {
         let more = if *count == expected { "; are frames its columns? Give its transpose" } else { "" };
         return Err(wrong(format!(
             "it has {length} values a row where {} are needed{more}",
             layout.first() + expected
         )));
     }
-    let dead = target.map_or(&[][..], |target| &target.dead);
     let mut text = Text { labels: first, ..Text::default() };
     for (row, values) in array.values.chunks(length.max(1)).enumerate() {
         let mut values = values[first..end].to_vec();
-        for &taxel in dead {
+        for &taxel in &target.dead {
             values[taxel] = if is_number(values[taxel]) { values[taxel] } else { 0.0 };
         }
         match values.iter().position(|value| !is_number(*value)) {
@@ -196,21 +171,24 @@ fn read_table(
     }
     let bad = count - text.rows.len();
     if bad > 0 {
-        text.remarks
-            .push(format!("{}: {bad} of {count} frames have values that are no numbers: left out", path.display()));
+        text.remarks.push(format!(
+            "{}: {bad} of {} left out for values that are no numbers",
+            path.display(),
+            counted(*count, "frame")
+        ));
     }
     Ok(text)
 }
 
 /// What is in a file.
-pub(crate) enum Content {
+enum Content {
     /// Values of a `.npy` file, NaN among them.
     Array(Array),
     Text(Vec<u8>),
 }
 
 /// The content of a file that may be one of frames.
-pub(crate) fn content(path: &Path) -> Result<Content, FrameError> {
+fn content(path: &Path) -> Result<Content, FrameError> {
     let mut bytes = std::fs::read(path).map_err(|source| FrameError::Read { path: path.to_path_buf(), source })?;
     if bytes.starts_with(npy::MAGIC) {
         let array = npy::parse(&bytes).map_err(|problem| FrameError::Array { path: path.to_path_buf(), problem })?;
@@ -235,12 +213,16 @@ pub(crate) fn content(path: &Path) -> Result<Content, FrameError> {
     }
 }
 
-/// The first line of a file of text that is no remark; nothing for a `.npy` file.
-pub(crate) fn first_line(path: &Path) -> Result<Option<String>, FrameError> {
-    let Content::Text(bytes) = content(path)? else { return Ok(None) };
-    let text = String::from_utf8_lossy(&bytes);
-    let line = text.split(['\n', '\r']).map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
-    Ok(Some(line.unwrap_or("").to_owned()))
+/// A file of any table as text: an array has a line for each of its rows.
+pub(crate) fn text(path: &Path) -> Result<Vec<u8>, FrameError> {
+    let Array { shape, values } = match content(path)? {
+        Content::Text(bytes) => return Ok(bytes),
+        Content::Array(array) => array,
+    };
+    let columns = shape.iter().skip(1).product::<usize>().max(1);
+    let mut text = String::new();
+    values.chunks(columns).for_each(|row| push_row(&mut text, row.iter().copied()));
+    Ok(text.into_bytes())
 }
 
 /// Whether frames of this shape, without the number of frames, are those of the sensor; else what they look like.

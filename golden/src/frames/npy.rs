@@ -9,9 +9,9 @@ const ALIGNMENT: usize = 64;
 
 /// An array, its values in C order: the last index runs fastest.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Array {
-    pub(crate) shape: Vec<usize>,
-    pub(crate) values: Vec<f64>,
+pub(super) struct Array {
+    pub(super) shape: Vec<usize>,
+    pub(super) values: Vec<f64>,
 }
 
 /// Reads a file's bytes; else what is wrong with them.

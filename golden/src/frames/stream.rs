@@ -13,16 +13,31 @@ pub struct FrameLines {
     lines: Lines,
     /// Whether a frame was there.
     begun: bool,
-    taxels: usize,
     samples: Samples,
+    /// Fields of a row of the grid.
+    columns: usize,
 }
 
 impl FrameLines {
     /// For frames of the design, whose values stand in their lines as `layout` says; `origin` is the name to use in
     /// messages.
     pub fn new(origin: &Path, design: &Design, layout: impl Into<Layout>) -> Self {
-        let lines = Lines::new(origin, &layout.into(), Some(&Target::from(design)));
-        Self { lines, begun: false, taxels: design.sensor.taxels(), samples: design.hardware.samples }
+        let layout = layout.into();
+        let lines = Lines::new(origin, &layout, &Target::from(design));
+        let columns = layout.first() + design.sensor.columns;
+        Self { lines, columns, begun: false, samples: design.hardware.samples }
+    }
+
+    /// The error of a line, which may hold a row of the grid.
+    fn of_row(&self, error: FrameError) -> FrameError {
+        match error {
+            FrameError::Length { path, line, found, expected, .. } if found == self.columns && found < expected => {
+                let hint = "is it a row of the grid? A stream has a frame a line; save the lines to a file, where frames may \
+                            be blocks of rows";
+                FrameError::Length { path, line, found, expected, hint: hint.to_owned() }
+            }
+            error => error,
+        }
     }
 
     /// What is to be said of the lines so far, as of a first one that holds the numbers of the columns.
@@ -37,16 +52,23 @@ impl FrameLines {
     ///
     /// As [`super::read_recording`], with the number of the line; the next one may be good again.
     pub fn frame(&mut self, line: &[u8]) -> Result<Option<Vec<f64>>, FrameError> {
-        let taxels = self.taxels;
-        let Some(frame) = self.lines.row(line, |found| (found != taxels).then_some(taxels))? else { return Ok(None) };
+        // A mark may come first.
+        if line.len() > 3 && line.chunks_exact(2).skip(1).all(|pair| pair.contains(&0)) {
+            return Err(FrameError::Format {
+                path: self.lines.cells.path.clone(),
+                what: "UTF-16, two bytes a character",
+                remedy: "pipe it through iconv -f UTF-16 -t UTF-8, or save it to a file, which is read as it is",
+            });
+        }
+        let Some(frame) = self.lines.row(line).map_err(|error| self.of_row(error))? else { return Ok(None) };
         self.lines.unclear()?;
         if !std::mem::replace(&mut self.begun, true) && self.lines.is_numbered(&frame) {
             return Ok(None);
         }
         let wrong = frame.iter().position(|&value| !self.samples.takes(value));
         let Some(column) = wrong else { return Ok(Some(frame)) };
-        let place = format!("line {}, column {}", self.lines.number(), self.lines.column(column));
-        let path = self.lines.path().to_path_buf();
+        let place = format!("line {}, column {}", self.lines.cells.number, self.lines.column(column));
+        let path = self.lines.cells.path.clone();
         Err(FrameError::Sample { path, place, value: frame[column], samples: self.samples })
     }
 }

@@ -1,17 +1,15 @@
-//! Tables of numbers as text: one row a line, with or without a header, whatever separates the values.
+//! Frames as text: one a line, with or without a header, whatever separates the values.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use super::cells::{Cells, Line, Numbers, are_words};
 use super::header::{self, Header};
 use super::layout::{Layout, Target};
 use super::{FrameError, blocks, hints, is_number};
 use crate::geometry;
-use crate::numbers::magnitude;
-use crate::separator::{self, Marks, Separator, foreign, is_unknown, no_number};
+use crate::numbers::{counted, magnitude};
+use crate::separator::{self, Separator, no_number};
 use crate::units::{pascals, timestamp};
-
-/// What some programs write before the first line.
-pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Rows of a file with their lines, and what is to be said of it.
 #[derive(Clone, Debug, Default)]
@@ -30,37 +28,16 @@ pub(super) struct Text {
     pub(super) remarks: Vec<String>,
 }
 
-/// What has been read of a file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum State {
-    #[default]
-    Begin,
-    /// A line of names.
-    Header,
-    Rows,
-}
-
 /// Reads lines one after the other; of each the columns of the values.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Lines {
-    /// Where they come from, for messages.
-    path: PathBuf,
     layout: Layout,
-    /// What they are read for; nothing for tables that are no frames.
-    target: Option<Target>,
-    /// That of the first line which has one; spaces between the words of a header are none.
-    separator: Option<Separator>,
-    state: State,
-    /// The lines above the first row, and what they say.
-    heads: Vec<Vec<u8>>,
+    target: Target,
+    pub(super) cells: Cells,
+    numbers: Numbers,
     header: Header,
-    /// Lines with # before the first other one: one of so many fields as a row has is a header.
-    comments: Vec<(usize, Vec<u8>)>,
-    /// Columns of the sensor, where a frame is a block of lines.
-    block: Option<usize>,
-    /// How many lines there were.
-    number: usize,
-    marks: Marks,
+    /// Columns of the sensor and of labels before them, where a frame is a block of lines.
+    block: Option<[usize; 2]>,
     /// Cells of a line that has blank ones behind its last value.
     padded: Option<usize>,
     /// The first line that was left out as too long, and its cells.
@@ -71,28 +48,29 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    pub(super) fn new(path: &Path, layout: &Layout, target: Option<&Target>) -> Self {
-        Self { path: path.to_path_buf(), layout: layout.clone(), target: target.cloned(), ..Self::default() }
-    }
-
-    /// Where the lines come from.
-    pub(super) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// The number of the last line, from 1.
-    pub(super) fn number(&self) -> usize {
-        self.number
+    pub(super) fn new(path: &Path, layout: &Layout, target: &Target) -> Self {
+        Self {
+            layout: layout.clone(),
+            target: target.clone(),
+            cells: Cells::new(path, layout.skip_lines),
+            numbers: Numbers::new(path),
+            header: Header::default(),
+            block: None,
+            padded: None,
+            too_long: None,
+            bad: None,
+            remarks: Vec::new(),
+        }
     }
 
     /// What is to be said of the lines so far.
     pub(super) fn remarks(&self) -> Vec<String> {
-        let path = self.path.display();
+        let path = self.cells.path.display();
         let bad = self
             .bad
             .as_ref()
-            .map(|(bad, first)| format!("{path}: {} frames are left out; the first: {first}", bad.len()));
-        let last = self.labels() + self.target.as_ref().map_or(0, |target| target.sensor.taxels());
+            .map(|(bad, first)| format!("{path}: {} left out; the first: {first}", counted(bad.len(), "frame")));
+        let last = self.labels() + self.target.sensor.taxels();
         let padded = self.padded.map(|_| format!("{path}: cells behind column {last} are blank, and are none"));
         let named = self.header.remarks.iter().map(|remark| format!("{path}, line {}: {remark}", self.header.line));
         self.remarks.iter().cloned().chain(named).chain(padded).chain(bad).collect()
@@ -122,93 +100,58 @@ impl Lines {
         of_header.or_else(|| labels.chunks(1).chain(labels.windows(2)).find_map(text))
     }
 
-    /// The numbers of the next line. Nothing for a blank one, for one that begins with #, for lines of names and units.
-    /// `wrong_length` is given the number of values and returns the number wanted, if that is another.
-    pub(super) fn row(
-        &mut self,
-        line: &[u8],
-        wrong_length: impl Fn(usize) -> Option<usize>,
-    ) -> Result<Option<Vec<f64>>, FrameError> {
-        self.number += 1;
-        let line = if self.number == 1 { line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line) } else { line };
-        let content = line.trim_ascii();
-        if content.starts_with(b"#")
-            && let Some(target) = &self.target
-        {
-            geometry::compare_remark(content, &self.path, self.number, &target.sensor)?;
-        }
-        if self.number <= self.layout.skip_lines || content.is_empty() {
-            return Ok(None);
-        }
-        if let Some(comment) = content.strip_prefix(b"#") {
-            if self.state == State::Begin {
-                self.comments.push((self.number, comment.trim_ascii().to_vec()));
+    /// The frame of the next line. Nothing for a blank one, for one that begins with #, for lines of names and units.
+    pub(super) fn row(&mut self, line: &[u8]) -> Result<Option<Vec<f64>>, FrameError> {
+        let (content, separator) = match self.cells.line(line)? {
+            Line::Cells(content, separator) => (content, separator),
+            Line::Remark(remark) => {
+                geometry::compare_remark(remark, &self.cells.path, self.cells.number, &self.target.sensor)?;
+                return Ok(None);
             }
-            return Ok(None);
-        }
-        // As spreadsheets have it.
-        if let [b's' | b'S', b'e' | b'E', b'p' | b'P', b'=', separator] = content {
-            self.separator = Some(Separator::Byte(*separator));
-            return Ok(None);
-        }
-        if self.heads.iter().any(|head| head == content) {
-            if !self.remarks.iter().any(|said| said.contains("the header again")) {
+            Line::Again if !self.remarks.iter().any(|said| said.contains("the header again")) => {
                 self.remark(
                     "the header again, as between recordings that were put behind each other; what follows are frames of \
                      the same",
                 );
+                return Ok(None);
             }
-            return Ok(None);
-        }
-        let separator = self.separator.unwrap_or_else(|| Separator::of(content));
-        let content = separator.trim(line);
-        let fields = separator.fields(content);
-        if let Some(separator) = foreign(content) {
-            return Err(FrameError::Separator { path: self.path.clone(), line: self.number, separator });
-        }
-        let values = fields.get(self.labels()..).unwrap_or_default();
-        // Readings that are not there are no words.
-        let is_word = |field: &&[u8]| no_number(field);
-        let is_known = |field: &&[u8]| !is_unknown(&String::from_utf8_lossy(field));
-        let words = if values.is_empty() { &fields } else { values };
-        let is_words = || words.iter().all(is_word) && (self.target.is_none() || words.iter().any(is_known));
-        let is_numbered =
-            |alone| self.target.as_ref().is_some_and(|target| header::is_numbered(values, &target.sensor, alone));
-        let (is_words, is_numbered) = match self.state {
-            State::Begin => (is_words(), is_numbered(!fields.iter().any(is_word))),
-            State::Header => (is_words() && self.is_units(values), is_numbered(false) && self.header.is_alike()),
-            State::Rows => (false, false),
+            Line::Again | Line::Blank => return Ok(None),
         };
-        let is_header = is_words || is_numbered;
-        self.separator = Some(separator).filter(|separator| !is_header || matches!(separator, Separator::Byte(_)));
-        if is_header {
+        let fields = separator.fields(content);
+        let values = fields.get(self.labels()..).unwrap_or_default();
+        let is_words = || are_words(if values.is_empty() { &fields } else { values });
+        let is_numbered = |alone| header::is_numbered(values, &self.target.sensor, alone);
+        let (is_words, is_numbered) = match (self.cells.has_rows, self.cells.heads.is_empty()) {
+            (true, _) => (false, false),
+            (false, true) => (is_words(), is_numbered(!fields.iter().any(|field| no_number(field)))),
+            (false, false) => (is_words() && self.is_units(values), is_numbered(false) && self.header.is_alike()),
+        };
+        let number = self.cells.number;
+        if is_words || is_numbered {
             if is_numbered {
                 self.numbered(values.iter().filter_map(|field| separator::number(field)).fold(0.0, f64::max));
             }
-            self.heads.push(content.trim_ascii().to_vec());
-            self.names(self.number, &fields)?;
-            self.state = State::Header;
+            self.cells.head(content, &fields);
+            let line = if self.cells.heads.len() > 1 { self.header.line } else { number };
+            self.header = self.named(line, self.cells.names.clone())?;
             return Ok(None);
         }
-        if self.state == State::Begin {
-            // As numpy.savetxt writes its header.
-            for (line, comment) in std::mem::take(&mut self.comments) {
-                let of_comment = Separator::of(&comment);
-                let names = of_comment.fields(&comment);
-                // Words of a remark may be as many.
-                let is_certain =
-                    of_comment == separator && line + 1 == self.number && !matches!(separator, Separator::Spaces);
-                match (names.len() == fields.len()).then(|| self.names(line, &names)) {
-                    Some(Ok(())) => break,
-                    Some(Err(problem)) if is_certain => return Err(problem),
-                    _ => {}
+        if !self.cells.has_rows && self.cells.heads.is_empty() {
+            for (line, names, is_certain) in self.cells.remarked(fields.len(), separator) {
+                match self.named(line, names) {
+                    Ok(header) => {
+                        self.header = header;
+                        break;
+                    }
+                    Err(problem) if is_certain => return Err(problem),
+                    Err(_) => {}
                 }
             }
         }
-        self.state = State::Rows;
-        match self.values(separator, content, wrong_length) {
+        self.cells.begin(separator);
+        match self.values(separator, content) {
             Ok(row) => Ok(Some(row)),
-            Err(error) => self.leave_out(self.number, error),
+            Err(error) => self.leave_out(number, error),
         }
     }
 
@@ -230,23 +173,20 @@ impl Lines {
         Ok(None)
     }
 
-    /// Takes the fields of a line for names of the columns.
-    fn names(&mut self, line: usize, fields: &[&[u8]]) -> Result<(), FrameError> {
-        if let Some(target) = &self.target {
-            let wrong = |problem| FrameError::Shape { path: self.path.clone(), line, problem };
-            self.header = self.header.with(line, fields, target, &self.layout).map_err(wrong)?;
-        }
-        Ok(())
+    /// The header of these names.
+    fn named(&self, line: usize, names: Vec<String>) -> Result<Header, FrameError> {
+        let wrong = |problem| FrameError::Shape { path: self.cells.path.clone(), line, problem };
+        Header::of(line, names, &self.target, &self.layout).map_err(wrong)
     }
 
     /// Adds what is to be said of the line.
     fn remark(&mut self, remark: &str) {
-        self.remarks.push(format!("{}, line {}: {remark}", self.path.display(), self.number));
+        self.remarks.push(format!("{}, line {}: {remark}", self.cells.path.display(), self.cells.number));
     }
 
     /// Whether a first row is a header of the sensor's numbers, as far as it can tell: they are whole and ascend. It says so.
     pub(super) fn is_numbered(&mut self, first: &[f64]) -> bool {
-        let is_header = self.heads.is_empty() && header::ascends(first);
+        let is_header = self.cells.heads.is_empty() && header::ascends(first);
         if is_header {
             self.numbered(first[first.len() - 1]);
         }
@@ -261,33 +201,23 @@ impl Lines {
     }
 
     /// The values of a line behind the labels.
-    fn values(
-        &mut self,
-        separator: Separator,
-        content: &[u8],
-        wrong_length: impl Fn(usize) -> Option<usize>,
-    ) -> Result<Vec<f64>, FrameError> {
-        let first = self.labels();
+    fn values(&mut self, separator: Separator, content: &[u8]) -> Result<Vec<f64>, FrameError> {
+        let (first, taxels) = (self.labels(), self.target.sensor.taxels());
         // Blank cells behind the last column are nothing; a blank one in it is a value that is not there.
         let cells = separator.split(content);
-        let columns = match (&self.target, self.columns()) {
-            (_, Some(_)) => cells.len(),
-            (Some(target), None) => first + target.sensor.taxels(),
-            (None, None) => 1,
-        };
+        let columns = if self.columns().is_some() { cells.len() } else { first + taxels };
         let fields = separator.at_most(columns, content);
-        if self.target.is_some() && fields.len() == columns && cells.len() > columns {
+        if fields.len() == columns && cells.len() > columns {
             self.padded = Some(cells.len());
         }
         let end = self.columns().map_or(fields.len(), |[_, last]| last);
         if fields.len() < end {
             return Err(self.wrong_length(fields.len(), end));
         }
+        let is_wrong = end.saturating_sub(first) != taxels;
         // A blank cell may be that of a label.
-        if let Some(wanted) = wrong_length(end.saturating_sub(first))
-            && fields.iter().any(|field| field.is_empty())
-        {
-            return Err(self.wrong_length(fields.len(), first + wanted));
+        if is_wrong && fields.iter().any(|field| field.is_empty()) {
+            return Err(self.wrong_length(fields.len(), first + taxels));
         }
         let unit = self.header.unit.unwrap_or(1.0);
         let order = self.header.order.as_ref();
@@ -295,26 +225,23 @@ impl Lines {
         let mut row = Vec::with_capacity(end);
         for (index, field) in fields.iter().enumerate().take(end).skip(first) {
             let place = match self.block {
-                Some(columns) => [self.number + index / columns, index % columns + 1],
-                None => [self.number, index + 1],
+                Some([columns, labels]) => [self.cells.number + index / columns, labels + index % columns + 1],
+                None => [self.cells.number, index + 1],
             };
-            self.marks.take(field, separator, place).map_err(|unclear| FrameError::thousands(&self.path, &unclear))?;
-            let number = separator::number(field).map(|value| value * unit).filter(|&value| is_number(value));
-            let target = self.target.as_ref();
-            let is_dead = || target.is_some_and(|target| target.dead.contains(&taxel(index - first)));
-            match number {
+            let number = self.numbers.of(field, separator, place)?.map(|value| value * unit);
+            match number.filter(|&value| is_number(value)) {
                 Some(number) => row.push(number),
-                None if is_dead() => row.push(0.0),
+                None if self.target.dead.contains(&taxel(index - first)) => row.push(0.0),
                 None => {
                     let text: String = String::from_utf8_lossy(field).chars().take(40).collect();
-                    let remedy = hints::value(target, &self.layout, &text);
+                    let remedy = hints::value(&self.target, &self.layout, &text);
                     let [line, column] = place;
-                    return Err(FrameError::Value { path: self.path.clone(), line, column, remedy, text });
+                    return Err(FrameError::Value { path: self.cells.path.clone(), line, column, remedy, text });
                 }
             }
         }
-        if let Some(wanted) = wrong_length(row.len()) {
-            return Err(self.wrong_length(fields.len(), first + wanted));
+        if is_wrong {
+            return Err(self.wrong_length(fields.len(), first + taxels));
         }
         let Some(order) = order else { return Ok(row) };
         let mut ordered = row.clone();
@@ -324,28 +251,28 @@ impl Lines {
 
     /// A line of another length than `expected`, the labels among it.
     fn wrong_length(&self, found: usize, expected: usize) -> FrameError {
-        let hint = hints::length(self.target.as_ref(), self.labels(), found, expected);
-        FrameError::Length { path: self.path.clone(), line: self.number, found, expected, hint }
+        let hint = hints::length(&self.target, self.labels(), found, expected);
+        FrameError::Length { path: self.cells.path.clone(), line: self.cells.number, found, expected, hint }
     }
 
     /// Whether the fields of a second line of words are units: the same for all taxels, or pressures.
     fn is_units(&self, values: &[&[u8]]) -> bool {
-        let Some(target) = &self.target else { return false };
-        let values = &values[..values.len().min(target.sensor.taxels())];
+        let values = &values[..values.len().min(self.target.sensor.taxels())];
         let is_pressure = |field: &[u8]| pascals(&String::from_utf8_lossy(field)).is_some();
         values.len() > 1 && values.iter().all(|field| *field == values[0] || is_pressure(field))
     }
 
-    /// From now on a line is a frame whose rows have so many columns and begin at line `number`, in a unit worth so much.
-    pub(super) fn begin_block(&mut self, number: usize, columns: usize, unit: Option<f64>, separator: u8) {
-        self.separator = Some(Separator::Byte(separator));
-        (self.state, self.block, self.number) = (State::Rows, Some(columns), number - 1);
-        (self.layout.labels, self.header.unit) = (0, unit);
+    /// From now on a line is a frame whose rows have `block` columns and labels and begin at line `number`, in a unit worth so
+    /// much.
+    pub(super) fn begin_block(&mut self, number: usize, block: [usize; 2], unit: Option<f64>, separator: u8) {
+        self.cells.begin_at(number, Separator::Byte(separator));
+        (self.block, self.header.unit) = (Some(block), unit);
+        (self.layout.labels, self.layout.columns) = (0, None);
     }
 
-    /// What is still to be refused at the end: commas or points that may be either.
+    /// Refuses commas or points that may be decimal ones or separators of thousands.
     pub(super) fn unclear(&self) -> Result<(), FrameError> {
-        self.marks.open().map_or(Ok(()), |unclear| Err(FrameError::thousands(&self.path, unclear)))
+        self.numbers.end()
     }
 
     /// Ends the reading of these rows.
@@ -358,9 +285,8 @@ impl Lines {
         if let Some((line, found)) = self.too_long
             && self.padded == Some(found)
         {
-            self.number = line;
-            let taxels = self.target.as_ref().map_or(0, |target| target.sensor.taxels());
-            return Err(self.wrong_length(found, self.labels() + taxels));
+            self.cells.number = line;
+            return Err(self.wrong_length(found, self.labels() + self.target.sensor.taxels()));
         }
         text.labels = self.labels();
         text.remarks = self.remarks();
@@ -373,36 +299,28 @@ impl Lines {
 }
 
 /// Reads all rows of a text, see [`Lines::row`], or blocks of rows where the shape of the file says so.
-pub(super) fn read(
-    path: &Path,
-    bytes: &[u8],
-    layout: &Layout,
-    target: Option<&Target>,
-    wrong_length: impl Fn(usize) -> Option<usize>,
-) -> Result<Text, FrameError> {
+pub(super) fn read(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) -> Result<Text, FrameError> {
     let mut lines = Lines::new(path, layout, target);
-    if let Some(target) = target.filter(|_| layout.columns.is_none())
-        && let Some(blocks) = blocks::join(path, bytes, layout, target)?
-    {
-        return blocks.read(lines, target, wrong_length);
+    if let Some(blocks) = blocks::join(path, bytes, layout, target)? {
+        return blocks.read(lines, target);
     }
     let mut text = Text::default();
     let mut labels: Vec<bool> = Vec::new();
     for line in separator::lines(bytes) {
-        let Some(row) = lines.row(line, &wrong_length)? else { continue };
-        let fields = lines.separator.map(|separator| separator.split(separator.trim(line))).unwrap_or_default();
+        let Some(row) = lines.row(line)? else { continue };
+        let separator = lines.cells.separator.unwrap_or(Separator::Spaces);
+        let fields = separator.split(separator.trim(line));
         let time = lines.time(fields.get(..lines.labels()).unwrap_or_default());
         let is_number = fields.first().is_some_and(|label| separator::number(label).is_some());
         labels.push(lines.labels() == 0 || is_number || time.is_some());
         text.times.push(time.unwrap_or(f64::NAN));
         text.rows.push(row);
-        text.lines.push(lines.number);
+        text.lines.push(lines.cells.number);
     }
-    if target.is_some()
-        && lines.heads.is_empty()
+    if lines.cells.heads.is_empty()
         && let Some(is_head) = header::guessed(&text.rows, &labels)
     {
-        lines.number = text.lines[0];
+        lines.cells.number = text.lines[0];
         lines.numbered(magnitude(&text.rows[0]));
         let kept = || is_head.iter().map(|is_head| !is_head);
         let [mut of_rows, mut of_lines, mut of_times] = [kept(), kept(), kept()];

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::designs::design;
 use golden::check::{Finding, Kind, check};
 use golden::design::{Curve, Design, Tension};
-use golden::frames::read_frames;
+use golden::frames::read_recording;
 use golden::matrices::Matrices;
 use golden::scene::{Converter, Scene, SensorErrors};
 use golden::solver::{Solver, Status};
@@ -71,7 +71,7 @@ fn good_frames_are_left_alone() {
 fn a_real_mat_reads_no_tension_and_reaches_the_end_of_its_range() {
     let mut design = design("bed-mat");
     design.input.tension = Tension::Read;
-    let frames = read_frames(&repository("data/bed_mat_64x27.csv"), &design.sensor, 2).unwrap();
+    let frames = read_recording(&repository("data/bed_mat_64x27.csv"), &design, 2).unwrap().frames;
     let findings = check(&design, &frames, None);
     // 73 readings are 104, one is 103, three are 102.
     let kinds: Vec<Kind> = findings.iter().map(|finding| finding.kind).collect();

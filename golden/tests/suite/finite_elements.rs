@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::designs::{ESTIMATORS, design, renew_table};
 use golden::forces::read_outcomes;
-use golden::frames::read_frames;
+use golden::frames::read_recording;
 use golden::geometry;
 use golden::metrics::{Outcome, Quantiles};
 use golden::solver::{Solver, Status};
@@ -27,7 +27,7 @@ struct Frame {
 
 fn frames(sensor: &str) -> Vec<Frame> {
     let file = repository(&format!("data/fe/{sensor}.csv"));
-    let stress = read_frames(&file, &design(&format!("{sensor}-fast")).sensor, 0).unwrap();
+    let stress = read_recording(&file, &design(&format!("{sensor}-fast")), 0).unwrap().frames;
     let truth = read_outcomes(&file.with_extension("forces.csv"), stress.len()).unwrap();
     let cases = fs::read_to_string(repository("data/fe/cases.csv")).unwrap();
     let cases: Vec<Vec<&str>> = cases

@@ -9,9 +9,9 @@ use std::sync::OnceLock;
 use crate::designs::folders;
 use golden::design::Design;
 use golden::forces::read_outcomes;
-use golden::frames::{read_frames, write_frames};
+use golden::frames::{Frames, read_recording, write_frames};
 use golden::scene::Scene;
-use golden::sensor::Sensor;
+
 use proptest::prelude::*;
 
 const CASES: u32 = 600;
@@ -127,8 +127,10 @@ fn is_a_message(message: &str) -> bool {
 }
 
 /// A sensor of four taxels.
-fn four() -> Sensor {
-    Sensor { columns: 2, rows: 2, pitch_mm: [4.0, 4.0], depth_mm: 3.0 }
+fn four() -> Design {
+    let text = "format = 3\nname = \"pad\"\n[algorithm]\nestimator = \"line\"\n[sensor]\ncolumns = 2\nrows = 2\n\
+                pitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
+    Design::from_toml(text, "pad.toml").expect("a design")
 }
 
 proptest! {
@@ -170,8 +172,8 @@ proptest! {
         bytes[place] = byte;
         bytes.truncate(bytes.len() - cut);
         fs::write(&path, bytes).expect("writable");
-        match read_frames(&path, &four(), 0) {
-            Ok(frames) => prop_assert!(frames.iter().flatten().all(|value| value.is_finite())),
+        match read_recording(&path, &four(), 0) {
+            Ok(found) => prop_assert!(found.frames.iter().flatten().all(|value| value.is_finite())),
             Err(error) => prop_assert!(is_a_message(&error.to_string()), "{}", error),
         }
     }
@@ -188,8 +190,8 @@ proptest! {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("fuzzed.csv");
         fs::write(&path, changed(&(header.to_owned() + &lines.join("\n")), &changes)).expect("writable");
-        match read_frames(&path, &four(), labels) {
-            Ok(frames) => {
+        match read_recording(&path, &four(), labels) {
+            Ok(Frames { frames, .. }) => {
                 prop_assert!(frames.iter().all(|frame| frame.len() == 4));
                 prop_assert!(frames.iter().flatten().all(|value| value.is_finite()));
             }
@@ -241,7 +243,7 @@ proptest! {
         let errors = [
             Design::load(&path).err().map(|error| error.to_string()),
             Scene::load(&path).err().map(|error| error.to_string()),
-            read_frames(&path, &four(), 0).err().map(|error| error.to_string()),
+            read_recording(&path, &four(), 0).err().map(|error| error.to_string()),
             read_outcomes(&path, 1).err().map(|error| error.to_string()),
         ];
         for error in errors.into_iter().flatten() {

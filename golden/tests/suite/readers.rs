@@ -109,6 +109,12 @@ fn a_header_of_sensor_numbers_is_none_of_the_frames() {
     assert!(lines.frame(b"3,5,7,11,12,20\n").unwrap().is_none() && lines.remark().is_some());
     assert!(lines.frame(b"3,5,7,11,12,20\n").unwrap().is_some(), "a constant load");
     assert_eq!(read("3,5,7,11,12,20\n3,5,7,11,12,20\n3,5,7,9,8,20\n", 0).unwrap().frames.len(), 3);
+    // Counts that all differ, behind a word, and such that rise in one frame alone, are much like those of the next frame.
+    let rest = "start,512,530,498,505,521,517\n1,513,529,498,506,520,518\n2,900,2030,700,505,521,517\n";
+    let by_chance = "1,2,3,4,5,6\n1,2,3,5,4,6\n9,8,2,5,4,6\n".replace(',', "00,");
+    for (text, labels) in [(rest, 1), (&by_chance, 0)] {
+        assert_eq!(read(text, labels).unwrap().frames.len(), 3, "{text:?}");
+    }
     // Counts of a few taxels without load.
     let few = Design { sensor: golden::sensor::Sensor { columns: 2, ..pad("").sensor }, ..pad("") };
     let counts = b"0,0,1,1\n1,0,1,1\n0,0,1,1\n1,0,2,3\n";
@@ -278,7 +284,7 @@ fn units_above_the_frames() {
         (format!("{names}MN/m2,MN/m2,MN/m2,MN/m2,MN/m2,MN/m2\n"), 1e6),
         ("a (g/cm2),b (g/cm2),c (g/cm2),d (g/cm2),e (g/cm2),f (g/cm2)\n".to_owned(), 98.066_5),
         ("p0 (Pa),p1 (Pa),p2 (Pa),p3 (Pa),p4 (Pa),p5 (Pa)\n".to_owned(), 1.0),
-        (format!("{names}raw,raw,raw,raw,raw,raw\n"), 1.0),
+        (format!("{names}left,left,left,left,left,left\n"), 1.0),
     ] {
         let text = format!("{header}{LINES}");
         let found = read(&text, 0).unwrap();
@@ -286,7 +292,7 @@ fn units_above_the_frames() {
         assert!(found.frames[1].iter().zip(B).all(near), "{text:?}: {:?}", found.frames);
         let remark = found.remark.unwrap_or_default();
         assert_eq!(remark.contains(&format!("is {pascals} Pa")), pascals > 1.0, "{remark}");
-        assert_eq!(remark.contains("raw, which is no known pressure"), text.contains("raw"), "{remark}");
+        assert_eq!(remark.contains("left, which is no known pressure"), text.contains("left"), "{remark}");
         // Counts are worth what the design says.
         let counts = read_bytes("f.csv", text.as_bytes(), &pad("pa_per_count = -10.0"), 0).unwrap();
         assert_eq!(counts.frames, [A, B]);
@@ -308,8 +314,23 @@ fn units_above_the_frames() {
     let counts =
         read_bytes("f.csv", format!("p0 (kPa),p1,p2,p3,p4,p5\n{LINES}").as_bytes(), &pad("pa_per_count = -1.0"), 0);
     assert_eq!(both(counts).frames.len(), 2);
-    let found = read("UNITS raw\n1,2,3\n4,5,6\n", 0).unwrap();
-    assert!(found.frames[0][0] == 1.0 && found.remark.unwrap().contains("unit raw, which is no known pressure"));
+    let found = read("UNITS mine\n1,2,3\n4,5,6\n", 0).unwrap();
+    assert!(found.frames[0][0] == 1.0 && found.remark.unwrap().contains("unit mine, which is no known pressure"));
+    // What is certainly no pressure is refused, unless the design says what it is worth.
+    for (unit, what) in [
+        ("N", "a force, and the design reads pascals: set sensor.pa_per_count to -125000: pascals of 1 N"),
+        ("mN", "to -125: pascals of 1 mN that presses on a taxel of 4 x 2 mm"),
+        ("mV", "a voltage, and the design reads pascals: set sensor.pa_per_count or sensor.curve"),
+        ("kΩ", "a resistance"),
+        ("pF", "a capacitance"),
+        ("raw", "a count"),
+    ] {
+        let in_line = format!("{}\n{LINES}", [0, 1, 2, 3, 4, 5].map(|taxel| format!("p{taxel} ({unit})")).join(","));
+        for text in [in_line, format!("UNITS {unit}\n1,2,3\n4,5,6\n")] {
+            refused(read(&text, 0), &["line 1", &format!("the unit {unit}"), what]);
+            read_bytes("f.csv", text.as_bytes(), &pad("pa_per_count = -1.0"), 0).unwrap();
+        }
+    }
 }
 
 #[test]
@@ -343,17 +364,17 @@ fn bad_frames_are_left_out_where_that_is_asked_for() {
     let found = read(&text, skip.clone()).unwrap();
     assert_eq!(found.frames, [A, B, A, B]);
     let remark = found.remark.unwrap();
-    assert!(remark.contains("2 frames are left out; the first: ") && remark.contains("line 3, column 3"), "{remark}");
+    assert!(remark.contains("2 frames left out; the first: ") && remark.contains("line 3, column 3"), "{remark}");
     // Of blocks one with a damaged row, or of more or fewer rows, is one frame that is left out.
     let good = "\n-7.5 -1 0\n2 -3 5\n";
     for bad in ["1 nan 3\n4 5 6", "1 2 3", "1 2 3\n4 5 6\n7 8 9", "1 2 3\n4 5", "4 5\n1 2 3", "1 2 3\n4 x 6"] {
         let found = read(&format!("{good}\n{bad}\n{good}"), skip.clone()).unwrap();
         assert_eq!((found.frames, found.skipped), (vec![A.to_vec(); 2], vec![1]), "{bad:?}");
-        assert!(found.remark.unwrap().contains("1 frames are left out; the first: "), "{bad:?}");
+        assert!(found.remark.unwrap().contains("1 frame left out; the first: "), "{bad:?}");
     }
     let found = read(&format!("{good}{good}1 2 3\n").replace("\n\n", "\n"), skip.clone()).unwrap();
     assert_eq!((found.frames.len(), &found.skipped[..]), (2, &[2][..]));
-    refused(read("1,2,nan,4,5,6\n", skip), &["1 frames are left out"]);
+    refused(read("1,2,nan,4,5,6\n", skip), &["1 frame left out"]);
 }
 
 #[test]
@@ -422,7 +443,7 @@ fn frames_as_blocks_of_rows() {
     let counting = read_bytes("movie.asf", export.as_bytes(), &pad("pa_per_count = -1000.0\ndead = [5]"), 0).unwrap();
     assert_eq!(counting.frames[0][..3], [1.0, 2.0, 0.0]);
     for (text, parts) in [
-        ("1 2 3\n\n4 5 6\n", ["line 2", "a block of 1 rows ends here where the sensor has 2"]),
+        ("1 2 3\n\n4 5 6\n", ["line 2", "a block of 1 row ends here where the sensor has 2"]),
         ("1 2 3\n4 5 6\n1 2 3", ["ends within a frame", "after 1 of 2 rows"]),
         ("1 2\n3 4\n5 6\n", ["blocks of 3 lines of 2 values are the transposed grid", "2 rows of 3 columns"]),
         ("1 2 3\n4 nan 6\n", ["line 2, column 2", "sensor.dead"]),
@@ -456,6 +477,15 @@ fn frames_as_blocks_of_rows() {
     assert!(found.frames == [[5.0, 6.0, 7.0, 8.0, 1.0, 1.0, 1.0, 1.0]; 2] && found.remark.unwrap().contains(labels));
     // Numbers of another sensor's columns are none.
     refused(read("7.5,1,2,3\n8,4,5,6\n", 0), &["line 1"]);
+    // Columns on either side of the rows.
+    let beside = "-7.5 -1 0 -8.5\n2 -3 5 4\n\n-8 -2 1 -9\n0.5 -4 6 2.5\n";
+    refused(read(beside, 0), &["line 1", "rows of the grid, with 1 column more?", "--columns 1-3 or --columns 2-4"]);
+    let columns = |pair| Layout { columns: Some(pair), ..Layout::default() };
+    for (text, pair) in [(beside, [1, 3]), ("0 -7.5 -1 0 x\n1 2 -3 5 y\n0 -8 -2 1 x\n1 0.5 -4 6 y\n", [2, 4])] {
+        let found = read(text, columns(pair)).unwrap();
+        assert!(found.frames == [A, B] && found.remark.unwrap().contains("blocks of 2 lines"), "{text:?}");
+    }
+    refused(read("9 1 2 3\n9 4 nan 6\n", columns([2, 4])), &["line 2, column 3", "sensor.dead"]);
     let skip = Layout { skip_lines: 2, ..Layout::default() };
     assert_eq!(read("1 2 3\n9 9 9\n1 2 3\n4 5 6\n", skip.clone()).unwrap().frames, [[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]]);
     assert_eq!(read(&format!("1,2,3\nanything: 5\n{LINES}"), skip).unwrap().frames, [A, B]);
@@ -474,6 +504,18 @@ fn headers_as_programs_write_them() {
     for bytes in [u16::to_le_bytes, u16::to_be_bytes] {
         let text: Vec<u8> = format!("\u{feff}{LINES}").encode_utf16().flat_map(bytes).collect();
         both(read_bytes("frames.csv", &text, &pad(""), 0));
+    }
+    // A stream of these is refused with what to do.
+    let mut stream = FrameLines::new(Path::new("port"), &pad(""), 0);
+    for (line, said) in [
+        (
+            &b"-\x007\x00,\x001\x00\r\x00\n"[..],
+            "port: the file is UTF-16, two bytes a character; pipe it through iconv",
+        ),
+        (b"-7.5,-1,0\n", "port, line 1: the line ends at column 3 where 6 values are needed; is it a row of the grid?"),
+    ] {
+        let refusal = stream.frame(line).unwrap_err().to_string();
+        assert!(refusal.contains(said) && refusal.contains("to a file"), "{refusal}");
     }
     let again = read(&format!("p0,p1,p2,p3,p4,p5\n{LINES}p0,p1,p2,p3,p4,p5\n{LINES}"), 0).unwrap();
     assert_eq!(again.frames, [A, B, A, B]);
@@ -529,7 +571,7 @@ fn true_forces_are_read_in_each_form() {
     }
     for (text, frames, part) in [
         ("F_z\n-6\n", 1, "F_x, F_y or F_z is not known"),
-        ("F_x,F_y,F_z\n3,0,-6\n", 2, "forces of 1 frames where there are 2"),
+        ("F_x,F_y,F_z\n3,0,-6\n", 2, "forces of 1 frame where there are 2"),
         ("1,2\n", 1, "column 2 where 8"),
     ] {
         let said = read(text, frames).unwrap_err();

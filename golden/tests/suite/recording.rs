@@ -6,9 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use golden::design::{CALIBRATION_FILE, Design, Filter, Kernel};
-use golden::frames::{FrameLines, read_frames, read_recording};
+use golden::frames::{FrameLines, read_recording};
 use golden::metrics::field_error;
-use golden::sensor::Sensor;
 use golden::solver::{Solver, Status};
 
 const PAD: &str = "format = 3\nname = \"pad\"\n[algorithm]\nestimator = \"line\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n";
@@ -141,8 +140,10 @@ fn gains_and_offsets_come_with_any_usual_separator() {
     }
 }
 
-fn grid(columns: usize, rows: usize) -> Sensor {
-    Sensor { columns, rows, pitch_mm: [4.0, 4.0], depth_mm: 3.0 }
+fn grid(columns: usize, rows: usize) -> Design {
+    let mut design = Design::from_toml(PAD, "pad.toml").unwrap();
+    (design.sensor.columns, design.sensor.rows) = (columns, rows);
+    design
 }
 
 #[test]
@@ -151,7 +152,7 @@ fn any_usual_separator_with_a_header_or_without() {
     let path = folder.path().join("frames.csv");
     let read = |text: &str| {
         fs::write(&path, text).unwrap();
-        read_frames(&path, &grid(2, 1), 0).map_err(|error| error.to_string())
+        read_recording(&path, &grid(2, 1), 0).map(|read| read.frames).map_err(|error| error.to_string())
     };
     let two = Ok(vec![vec![-1.5, 2.0], vec![3e3, 4.0]]);
     for text in [
@@ -252,7 +253,7 @@ fn arrays_of_frames() {
     let path = folder.path().join("frames.npy");
     let read = |bytes: &[u8], labels| {
         fs::write(&path, bytes).unwrap();
-        read_frames(&path, &grid(3, 2), labels).map_err(|error| error.to_string())
+        read_recording(&path, &grid(3, 2), labels).map(|read| read.frames).map_err(|error| error.to_string())
     };
     let counted = |from: usize| (from..from + 6).map(|value| value as f64).collect::<Vec<_>>();
     let two = Ok(vec![counted(0), counted(6)]);
@@ -279,7 +280,7 @@ fn label_columns_are_skipped() {
     let path = folder.path().join("frames.csv");
     let read = |text: &str, labels| {
         fs::write(&path, text).unwrap();
-        read_frames(&path, &grid(2, 1), labels).map_err(|error| error.to_string())
+        read_recording(&path, &grid(2, 1), labels).map(|read| read.frames).map_err(|error| error.to_string())
     };
     let two = Ok(vec![vec![1.0, 2.0], vec![3.0, 4.0]]);
     assert_eq!(read("a,0,1,2\nb,é 1,3,4\n", 2), two);
@@ -306,13 +307,14 @@ fn label_columns_are_skipped() {
     }
     // Names that differ by their numbers alone are those of the taxels.
     let mat = file("data/bed_mat_64x27.csv");
-    assert_eq!(read_frames(&mat, &grid(27, 64), 0).unwrap(), read_frames(&mat, &grid(27, 64), 2).unwrap());
+    let [found, labelled] = [0, 2].map(|labels| read_recording(&mat, &grid(27, 64), labels).unwrap().frames);
+    assert_eq!(found, labelled);
 }
 
 #[test]
 fn the_mat_carries_the_person() {
     let mut design = Design::load(&file("designs/bed-mat.toml")).unwrap();
-    let frames = read_frames(&file("data/bed_mat_64x27.csv"), &grid(27, 64), 2).unwrap();
+    let frames = read_recording(&file("data/bed_mat_64x27.csv"), &design, 2).unwrap().frames;
     assert_eq!(frames.len(), 24);
     let filtered = Solver::new(&design).unwrap();
     design.algorithm.filter = Filter::None;

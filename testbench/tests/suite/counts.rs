@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use golden::design::{Design, Samples, Scaling};
-use golden::frames::read_frames;
+use golden::frames::read_recording;
 use hdl_gen::model::SATURATED;
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
@@ -186,7 +186,7 @@ fn the_most_negative_count_on_a_capped_power_law() {
 #[test]
 fn every_frame_of_the_mat_is_the_models() {
     let plan = planned(&shipped("bed-mat"));
-    let frames = read_frames(&workspace("data/bed_mat_64x27.csv"), &plan.design.sensor, 2).expect("the recording");
+    let frames = read_recording(&workspace("data/bed_mat_64x27.csv"), &plan.design, 2).expect("the recording").frames;
     let packets: Vec<Vec<u32>> = frames.iter().map(|frame| encode(frame)).collect();
     assert_eq!(packets.len(), 24);
     let (expected, built) = (model_answers(&plan, &packets), built(&plan));

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use golden::frames::{read_frames, write_frames};
+use golden::frames::{read_recording, write_frames};
 use tempfile::TempDir;
 
 use super::{folder_with, line_of, row};
@@ -60,7 +60,7 @@ fn frames_that_are_no_text() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("frames.csv");
     fs::write(&path, [0xff, 0xfe, b',', b'1', b'\n']).unwrap();
-    let error = read_frames(&path, &line_of(2), 0).unwrap_err().to_string();
+    let error = read_recording(&path, &line_of(2), 0).unwrap_err().to_string();
     assert!(error.contains("line 1, column 1"), "{error}");
 }
 
@@ -70,17 +70,17 @@ fn frames_read_back_to_the_bit() {
     let path = folder.path().join("frames.csv");
     let frames = vec![vec![-0.1, 1.0 / 3.0, 1e-300], vec![-0.0, 123_456_789.123, f64::from(f32::MAX)]];
     write_frames(&path, &frames).unwrap();
-    let again = read_frames(&path, &line_of(3), 0).unwrap();
+    let again = read_recording(&path, &line_of(3), 0).unwrap().frames;
     let array = path.with_extension("npy");
     write_frames(&array, &frames).unwrap();
     assert!(fs::read(&array).unwrap().starts_with(b"\x93NUMPY"));
-    assert_eq!(read_frames(&array, &line_of(3), 0).unwrap(), again);
+    assert_eq!(read_recording(&array, &line_of(3), 0).unwrap().frames, again);
     let bits = |frames: &[Vec<f64>]| -> Vec<u64> { frames.iter().flatten().map(|value| value.to_bits()).collect() };
     assert_eq!(bits(&again), bits(&frames));
 
     // The sensor's stream is float32: what does not fit there is no stress.
     write_frames(&path, &[vec![0.0, 1e39, 0.0]]).unwrap();
-    let error = read_frames(&path, &line_of(3), 0).unwrap_err().to_string();
+    let error = read_recording(&path, &line_of(3), 0).unwrap_err().to_string();
     assert!(error.contains("line 1, column 2"), "{error}");
 }
 

@@ -7,8 +7,8 @@ mod fitting;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use golden::frames::{read_frames, write_frames};
-use golden::sensor::Sensor;
+use golden::design::Design;
+use golden::frames::{read_recording, write_frames};
 use tempfile::TempDir;
 
 use crate::support::{PLAIN, sptfra, text, workspace};
@@ -22,8 +22,10 @@ fn folder_with(frames: &str) -> (TempDir, PathBuf) {
 }
 
 /// So many taxels in a row.
-fn line_of(columns: usize) -> Sensor {
-    Sensor { columns, rows: 1, pitch_mm: [4.0, 4.0], depth_mm: 3.0 }
+fn line_of(columns: usize) -> Design {
+    let mut design = Design::load(&workspace("golden/tests/designs/small.toml")).unwrap();
+    (design.sensor.columns, design.sensor.rows) = (columns, 1);
+    design
 }
 
 /// The first line of every force file.
@@ -165,7 +167,7 @@ fn frames_for_a_design_and_for_no_other() {
     assert!(output.status.success(), "{output:?}");
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!((&report["frames"], &report["taxels"]), (&36.into(), &30.into()));
-    let counts = read_frames(&frames, &line_of(30), 0).unwrap();
+    let counts = read_recording(&frames, &line_of(30), 0).unwrap().frames;
     assert!(counts.iter().flatten().all(|count| count.fract() == 0.0), "a sensor that counts");
     assert!(counts.iter().flatten().any(|&count| count > 5000.0));
     let solve = |design: &Path| sptfra(&["solve", text(design), "--frames", text(&frames), "--out", text(&forces)]);
@@ -214,8 +216,9 @@ fn suspicious_frames_are_solved_with_a_warning_and_found_by_check() {
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(output.status.success() && said.contains("36 frames") && said.contains("nothing suspicious"), "{said}");
 
-    let turned: Vec<Vec<f64>> = read_frames(&frames, &line_of(100), 0)
+    let turned: Vec<Vec<f64>> = read_recording(&frames, &line_of(100), 0)
         .unwrap()
+        .frames
         .iter()
         .map(|frame| frame.iter().map(|stress| -stress).collect())
         .collect();

@@ -15,31 +15,23 @@ pub(super) enum Meaning {
 }
 
 /// What the columns of a header are, and what their unit is worth in newtons or pascals.
-pub(super) fn meanings(
-    names: &[String],
-    units: Option<&[String]>,
-    remarks: &mut Vec<String>,
-) -> Result<Vec<Option<(Meaning, f64)>>, String> {
+pub(super) fn meanings(names: &[String], remarks: &mut Vec<String>) -> Result<Vec<Option<(Meaning, f64)>>, String> {
     let mut unused = Vec::new();
     let mut found = Vec::new();
-    for (column, name) in names.iter().enumerate() {
+    for name in names {
         if let Some(unit) = seconds(name) {
             found.push(Some((Meaning::Time, unit)));
             continue;
         }
         // Units keep their case: mN and MN differ.
-        let cut = name.find(['(', '[', '{', '/']).unwrap_or(name.len());
-        let (mut base, mut unit) =
-            (name[..cut].trim(), name[cut..].trim_matches(|c: char| !c.is_alphanumeric() && c != 'µ'));
-        if unit.is_empty()
+        let (base, behind) = name.split_at(name.find(['(', '[', '{', '/']).unwrap_or(name.len()));
+        let behind = behind.trim_start_matches(|c: char| !c.is_alphanumeric());
+        let (mut base, mut unit) = (base.trim(), behind.split([')', ']', '}']).next().unwrap_or_default().trim());
+        if meaning(base).is_none()
             && let Some((before, after)) = base.rsplit_once(['_', ' '])
             && force_or_pressure(after).is_some()
-            && meaning(before).is_some()
         {
             (base, unit) = (before, after);
-        }
-        if let Some(below) = units.and_then(|units| units.get(column)).filter(|_| unit.is_empty()) {
-            unit = below.trim_matches(|c: char| !c.is_alphanumeric());
         }
         let Some(meaning) = meaning(base) else {
             unused.push(name.as_str());

@@ -303,8 +303,8 @@ impl<'a> Work<'a> {
         self.figure(errors.collect())
     }
 
-    /// How far the gains differ (standard deviation), and how far those from one half of the parts differ from those of
-    /// the other (root mean square over the square root of two).
+    /// Standard deviation of the gains, and how far those of one half of the parts are from the other's: root mean square over
+    /// the square root of two.
     pub(super) fn halves(&self, found: &Found, prior: Prior, folds: &Folds) -> [f64; 2] {
         let half =
             |odd: usize| -> Vec<usize> { folds.parts().skip(odd).step_by(2).flat_map(|[_, left]| left).collect() };

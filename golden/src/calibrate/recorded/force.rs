@@ -10,7 +10,7 @@ use super::table::Measured;
 use super::{RecordedError, friction, report, sideways};
 use super::{holds, loads};
 use crate::design::Design;
-use crate::numbers::{magnitude, middle};
+use crate::numbers::{counted, magnitude, middle};
 use crate::solver::{Solver, Status};
 
 /// Fewer places tell no gains of taxels.
@@ -45,7 +45,8 @@ pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> 
     let mut solver = Rows::new(design)?;
     let (mut work, lost) = Work::new(design, &mut holds, &mut solver);
     if lost > 0 {
-        remarks.push(format!("{lost} holds have readings that no contact makes, and are left out: see `sptfra check`"));
+        remarks
+            .push(format!("{} left out, whose readings no contact makes: see `sptfra check`", counted(lost, "hold")));
     }
     if work.loads.is_empty() {
         return Err(wrong(("no hold has an answer".to_owned(), "run `sptfra check` on the frames".to_owned())));

@@ -5,11 +5,12 @@
 
 use std::ops::Range;
 
-use super::loads::{REST, Wrong, frames_of, loads, rest};
+use super::loads::{REST, Wrong, loads, rest};
 use super::table::Measured;
 use crate::check::ends::end_of_range;
 use crate::dead_taxels::MOST_DEAD;
 use crate::design::Design;
+use crate::numbers::counted;
 
 /// A contact ends where the centre of pressure has moved by this many pitches.
 const MOVED: f64 = 0.5;
@@ -102,7 +103,7 @@ pub(super) fn part(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
     if let Some(end) = end {
         remarks.push(format!(
             "{} under load have readings at {}, the end of the converter's range, and are left out: what presses harder \
-             cannot be told", frames_of(clipped), sign * end + 0.0
+             cannot be told", counted(clipped, "frame"), sign * end + 0.0
         ));
     }
     // A reading that noise alone explains is none.
@@ -128,7 +129,7 @@ pub(super) fn part(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
     if silent > 0 {
         remarks.push(format!(
             "{} under load read nothing and are left out: the contact missed the taxels, or fell between them",
-            frames_of(silent)
+            counted(silent, "frame")
         ));
     }
     if stretches.is_empty() {

@@ -3,7 +3,7 @@
 use super::lag::Lags;
 use super::table::Measured;
 use crate::design::Design;
-use crate::numbers::{magnitude, middle, sorted};
+use crate::numbers::{counted, magnitude, middle, sorted};
 
 /// Loads below this share of the largest are rest.
 pub(super) const REST: f64 = 0.01;
@@ -144,7 +144,7 @@ pub(super) fn loads(measured: &Measured, remarks: &mut Vec<String>) -> Result<Ve
     }
     let against = known.iter().filter(|&&force| -sign * force > REST * largest).count();
     if against > 0 {
-        remarks.push(format!("{} with an F_z that pulls are left out", frames_of(against)));
+        remarks.push(format!("{} with an F_z that pulls left out", counted(against, "frame")));
     }
     Ok(measured
         .forces
@@ -204,10 +204,6 @@ fn of_all(rest: &[f64], alive: &[usize]) -> Vec<f64> {
         all[taxel] = rest[taxel];
     }
     all
-}
-
-pub(super) fn frames_of(count: usize) -> String {
-    if count == 1 { "1 frame".to_owned() } else { format!("{count} frames") }
 }
 
 #[cfg(test)]

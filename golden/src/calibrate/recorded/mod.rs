@@ -29,6 +29,7 @@ pub use force::fit_forces;
 pub use page::page;
 pub use report::{Errors, Hold, Recorded, TaxelGain};
 pub use table::{Measured, read_forces, read_pressures};
+pub(crate) use table::{forces, table};
 pub use uniform::fit_uniform;
 
 use crate::design::Design;

@@ -7,8 +7,9 @@ use std::path::Path;
 
 use super::RecordedError;
 use super::columns::{Meaning, meanings};
-use crate::frames::{Array, Content, FrameError, Frames, content};
-use crate::separator::{self, Marks, Separator, is_unknown};
+use crate::frames::{FrameError, Frames, Numbers, Table, text};
+use crate::numbers::counted;
+use crate::separator::{self, Separator, is_unknown};
 use crate::units::timestamp;
 
 /// Frames and forces must have this share of the frames' time in common.
@@ -111,16 +112,6 @@ impl Measured {
     }
 }
 
-/// A table as it is, before anybody knows what its columns mean.
-struct Raw {
-    names: Option<Vec<String>>,
-    units: Option<Vec<String>>,
-    /// Line number and fields.
-    rows: Vec<(usize, Vec<String>)>,
-    /// What separates the fields.
-    separator: Separator,
-}
-
 /// Reads the forces of a file: columns `F_x`, `F_y`, `F_z`, of which any may be missing, in newtons unless the header
 /// names another unit.
 ///
@@ -128,7 +119,12 @@ struct Raw {
 ///
 /// [`RecordedError`] for a file that cannot be read, a column nobody can tell, and a value that is no number.
 pub fn read_forces(path: &Path) -> Result<Measured, RecordedError> {
-    read(path, "F_x,F_y,F_z", &|count, rising| match (count, rising) {
+    forces(path, &table(path, &text(path)?)?)
+}
+
+/// The same of a table.
+pub(crate) fn forces(path: &Path, table: &Table<'_>) -> Result<Measured, RecordedError> {
+    read(path, table, "F_x,F_y,F_z", &|count, rising| match (count, rising) {
         (1, _) => Some(vec![Some(Meaning::Force(2))]),
         (2, true) => Some(vec![None, Some(Meaning::Force(2))]),
         (3, _) => Some((0..3).map(|axis| Some(Meaning::Force(axis))).collect()),
@@ -147,7 +143,7 @@ pub fn read_forces(path: &Path) -> Result<Measured, RecordedError> {
 ///
 /// As [`read_forces`].
 pub fn read_pressures(path: &Path) -> Result<Measured, RecordedError> {
-    read(path, "pressure (kPa)", &|count, rising| match (count, rising) {
+    read(path, &table(path, &text(path)?)?, "pressure (kPa)", &|count, rising| match (count, rising) {
         (1, _) => Some(vec![Some(Meaning::Pressure)]),
         (2, true) => Some(vec![None, Some(Meaning::Pressure)]),
         _ => None,
@@ -156,33 +152,44 @@ pub fn read_pressures(path: &Path) -> Result<Measured, RecordedError> {
 
 type Guess = dyn Fn(usize, bool) -> Option<Vec<Option<Meaning>>>;
 
-fn read(path: &Path, example: &str, guess: &Guess) -> Result<Measured, RecordedError> {
+/// The table of a text of measured values.
+///
+/// # Errors
+///
+/// As [`Table::of`].
+pub(crate) fn table<'a>(path: &Path, text: &'a [u8]) -> Result<Table<'a>, FrameError> {
+    // Such as `normal force (N)`.
+    let is_name = |line: &str| matches!(meanings(&[line.to_owned()], &mut Vec::new()).as_deref(), Ok([Some(_)]));
+    Table::of(path, text, is_name)
+}
+
+fn read(path: &Path, table: &Table<'_>, example: &str, guess: &Guess) -> Result<Measured, RecordedError> {
     let wrong = |problem: String, remedy: String| RecordedError::File { path: path.to_path_buf(), problem, remedy };
-    let raw = raw(path)?;
-    let columns = raw.rows.first().map_or(0, |(_, fields)| fields.len());
+    let columns = table.rows.first().map_or(0, |(_, fields)| fields.len());
     if columns == 0 {
         return Err(wrong("no line of numbers in it".to_owned(), "write one line for each frame".to_owned()));
     }
     let mut remarks = Vec::new();
-    let header = raw.names.as_ref().map(|names| meanings(names, raw.units.as_deref(), &mut remarks));
-    let found = match header {
-        Some(found) => found
-            .map_err(|problem| wrong(problem, "name the unit: N, mN, kN, g, kg, Pa, kPa, mbar, bar, psi".to_owned()))?,
-        None => Vec::new(),
-    };
+    let mut named = meanings(&table.names, &mut remarks)
+        .map_err(|problem| wrong(problem, "name the unit: N, mN, kN, g, kg, Pa, kPa, mbar, bar, psi".to_owned()))?;
     let wanted = |meaning: Meaning| match guess(1, false) {
         Some(only) if only[0] == Some(Meaning::Pressure) => meaning == Meaning::Pressure,
         _ => matches!(meaning, Meaning::Force(_)),
     };
-    let mut named: Vec<Option<(Meaning, f64)>> = found;
     if !named.iter().flatten().any(|&(meaning, _)| wanted(meaning)) {
-        let rising = rises(&raw);
-        let guessed = guess(columns, rising).filter(|_| raw.names.is_none() || columns == 1).ok_or_else(|| {
-            let seen = raw.names.as_ref().map_or_else(
-                || format!("{columns} columns without a header"),
-                |names| format!("the columns {}", names.join(", ")),
-            );
-            wrong(format!("{seen}: nobody can tell what they are"), format!("write a header such as {example}"))
+        let may_be_decimals = table.names.is_empty() && may_be_decimals(table);
+        let is_open = columns == 1 || table.names.is_empty() && !may_be_decimals;
+        let guessed = guess(columns, rises(table)).filter(|_| is_open).ok_or_else(|| {
+            let seen = match table.names[..] {
+                [] => format!("{} without a header", counted(columns, "column")),
+                _ => format!("the columns {}", table.names.join(", ")),
+            };
+            let (asked, points) =
+                if may_be_decimals { (". Are these decimal commas?", "decimal points, or ") } else { ("", "") };
+            wrong(
+                format!("{seen}: nobody can tell what they are{asked}"),
+                format!("write {points}a header such as {example}"),
+            )
         })?;
         named = guessed.into_iter().map(|meaning| meaning.map(|meaning| (meaning, 1.0))).collect();
         let what = if named.iter().flatten().any(|&(meaning, _)| meaning == Meaning::Pressure) {
@@ -194,34 +201,32 @@ fn read(path: &Path, example: &str, guess: &Guess) -> Result<Measured, RecordedE
         };
         let at = named.iter().position(Option::is_some).unwrap_or(0) + 1;
         remarks.push(format!("no header names the columns: from column {at} on they are taken for {what}"));
-        if timestamp(&raw.rows[0].1[0]).is_some() {
+        if timestamp(&String::from_utf8_lossy(table.rows[0].1[0])).is_some() {
             named[0] = Some((Meaning::Time, 1.0));
         }
     }
-    if let Some(names) = &raw.names {
-        refuse_more(&raw, names.len()).map_err(|(problem, remedy)| wrong(problem, remedy))?;
-    }
+    refuse_more(table).map_err(|(problem, remedy)| wrong(problem, remedy))?;
     let contact = named.iter().position(|column| matches!(column, Some((Meaning::Contact, _))));
     let mut measured = Measured { remarks, ..Measured::default() };
     let (mut contacts, mut times) = (Vec::new(), Vec::new());
-    let mut marks = Marks::default();
-    for (line, fields) in &raw.rows {
+    let mut numbers = Numbers::new(path);
+    for (line, fields) in &table.rows {
         let (mut force, mut pressure, mut time) = ([None; 3], None, f64::NAN);
+        let cell = |column: usize| fields.get(column).copied().unwrap_or_default();
+        let text = |column: usize| String::from_utf8_lossy(cell(column));
         for (column, told) in named.iter().enumerate() {
-            let text = fields.get(column).map_or("", String::as_str);
             let &Some((meaning, unit)) = told else { continue };
-            if meaning == Meaning::Contact || is_unknown(text) {
+            if meaning == Meaning::Contact || is_unknown(&text(column)) {
                 continue;
             }
-            // What is no number at all is refused below.
-            let _ = marks.take(text.as_bytes(), raw.separator, [*line, column + 1]);
-            let number = separator::number(text.as_bytes()).filter(|value| value.is_finite()).map(|value| unit * value);
-            let stamp = || timestamp(text).filter(|_| meaning == Meaning::Time);
+            let number = numbers.of(cell(column), table.separator, [*line, column + 1])?;
+            let number = number.filter(|value| value.is_finite()).map(|value| unit * value);
+            let stamp = || timestamp(&text(column)).filter(|_| meaning == Meaning::Time);
             let value = number.or_else(stamp).ok_or_else(|| FrameError::Value {
                 path: path.to_path_buf(),
                 line: *line,
                 column: column + 1,
-                text: text.chars().take(40).collect(),
+                text: text(column).chars().take(40).collect(),
                 remedy: "leave blank what is unknown".to_owned(),
             })?;
             match meaning {
@@ -234,117 +239,47 @@ fn read(path: &Path, example: &str, guess: &Guess) -> Result<Measured, RecordedE
         times.push(time);
         measured.forces.push(force);
         measured.pressures.push(pressure);
-        contacts.extend(contact.map(|column| fields.get(column).cloned().unwrap_or_default()));
+        contacts.extend(contact.map(|column| text(column).into_owned()));
     }
-    if let Some(unclear) = marks.open() {
-        return Err(FrameError::thousands(path, unclear).into());
-    }
+    numbers.end()?;
     measured.contacts = contact.map(|_| contacts);
     measured.times = times.iter().all(|time| time.is_finite()).then_some(times).filter(|times| !times.is_empty());
     Ok(measured)
 }
 
 /// Refuses a line with more values than the header has names: decimal commas look like separators.
-fn refuse_more(raw: &Raw, names: usize) -> Result<(), (String, String)> {
-    let filled = |fields: &[String]| fields.iter().rposition(|field| !field.is_empty()).map_or(0, |last| last + 1);
-    let Some((line, fields)) = raw.rows.iter().find(|(_, fields)| filled(fields) > names) else { return Ok(()) };
-    let plural = if names == 1 { "" } else { "s" };
-    let remedy = match raw.separator {
+fn refuse_more(table: &Table<'_>) -> Result<(), (String, String)> {
+    let names = table.names.len();
+    let filled = |fields: &[&[u8]]| fields.iter().rposition(|field| !field.is_empty()).map_or(0, |last| last + 1);
+    let more = table.rows.iter().find(|(_, fields)| names > 0 && filled(fields) > names);
+    let Some((line, fields)) = more else { return Ok(()) };
+    let remedy = match table.separator {
         Separator::Byte(b',') => "are these decimal commas? Separate the values by semicolons, or write decimal points",
         _ => "name every column in the header",
     };
-    let problem = format!("line {line}: {} values where the header has {names} name{plural}", filled(fields));
+    let problem = format!("line {line}: {} values where the header has {}", filled(fields), counted(names, "name"));
     Err((problem, remedy.to_owned()))
 }
 
-/// Whether a line of words is the name of one column, such as `normal force (N)`.
-fn is_name(line: &str) -> bool {
-    matches!(meanings(&[line.to_owned()], None, &mut Vec::new()).as_deref(), Ok([Some(_)]))
+/// Whether two columns may be one of numbers with decimal commas. The first column of a table is one of times or numbers if
+/// its steps are equal.
+fn may_be_decimals(table: &Table<'_>) -> bool {
+    let is_whole = |cell: &[u8]| !cell.is_empty() && cell.iter().all(u8::is_ascii_digit);
+    let halves = |(_, row): &(usize, Vec<&[u8]>)| match row[..] {
+        [before, after] if is_whole(after) && is_whole(before.strip_prefix(b"-").unwrap_or(before)) => {
+            separator::number(before)
+        }
+        _ => None,
+    };
+    let Some(first) = table.rows.iter().map(halves).collect::<Option<Vec<f64>>>() else { return false };
+    let mut steps = first.windows(2).map(|pair| pair[1] - pair[0]);
+    let step = steps.next();
+    table.separator == Separator::Byte(b',') && (step.is_none() || steps.any(|other| Some(other) != step))
 }
 
 /// Whether the first column counts or tells the time.
-fn rises(raw: &Raw) -> bool {
-    let value = |text: &String| separator::number(text.as_bytes()).or_else(|| timestamp(text));
-    let first: Vec<f64> = raw.rows.iter().filter_map(|(_, fields)| value(fields.first()?)).collect();
-    first.len() == raw.rows.len() && first.len() > 1 && first.windows(2).all(|pair| pair[1] > pair[0])
-}
-
-fn raw(path: &Path) -> Result<Raw, RecordedError> {
-    let bytes = match content(path)? {
-        Content::Text(bytes) => bytes,
-        Content::Array(Array { shape, values }) => {
-            let columns = shape.get(1..).unwrap_or(&[]).iter().product::<usize>().max(1);
-            let text = |value: &f64| if value.is_nan() { String::new() } else { format!("{value:?}") };
-            let rows = values.chunks(columns).enumerate();
-            let rows = rows.map(|(row, values)| (row + 1, values.iter().map(text).collect())).collect();
-            return Ok(Raw { names: None, units: None, rows, separator: Separator::Spaces });
-        }
-    };
-    let (mut heads, mut comments, mut rows) = (Vec::new(), Vec::new(), Vec::new());
-    let mut separator = None;
-    for (index, line) in separator::lines(&bytes).enumerate() {
-        let content = line.trim_ascii();
-        if content.is_empty() {
-            // A file of one column may leave a line blank: the force is unknown.
-            if separator.is_some_and(|_| !rows.is_empty()) {
-                rows.push((index + 1, Vec::new()));
-            }
-            continue;
-        }
-        if content.len() == 5 && content[..4].eq_ignore_ascii_case(b"sep=") {
-            separator = Some(Separator::Byte(content[4]));
-            continue;
-        }
-        let is_comment = content.starts_with(b"#");
-        let content = content.strip_prefix(b"#").unwrap_or(content).trim_ascii();
-        let of_line = Separator::of(content);
-        let split = |by: Separator| -> Vec<String> {
-            // A blank cell beside a tab is a cell.
-            by.split(if is_comment { content } else { by.trim(line) })
-                .into_iter()
-                .map(|field| String::from_utf8_lossy(field).trim().trim_matches('"').to_owned())
-                .collect()
-        };
-        let words = || String::from_utf8_lossy(content).trim_matches('"').to_owned();
-        if is_comment {
-            comments = vec![(of_line, words())];
-            continue;
-        }
-        // The header again, between logs that were put behind each other.
-        if !rows.is_empty() && heads.first().is_some_and(|(_, head)| *head == words()) {
-            continue;
-        }
-        let fields = split(*separator.get_or_insert(of_line));
-        let number = |field: &String| field.replace(',', ".").parse::<f64>().is_ok_and(f64::is_finite);
-        if rows.is_empty()
-            && heads.len() < 2
-            && !fields.iter().any(number)
-            && fields.iter().any(|field| !field.is_empty())
-            && !fields.iter().all(|field| is_unknown(field))
-        {
-            // What separates a header of words may be another character than what separates the numbers.
-            heads.push((of_line, words()));
-            separator = None;
-            continue;
-        }
-        rows.push((index + 1, fields));
-    }
-    while rows.last().is_some_and(|(_, fields): &(usize, Vec<String>)| fields.is_empty()) {
-        rows.pop();
-    }
-    let columns = rows.first().map_or(0, |(_, fields)| fields.len());
-    if columns > 1 {
-        // Blank lines between the lines of a table are nothing.
-        rows.retain(|(_, fields)| !fields.is_empty());
-    }
-    // Of one column the whole line is the name, whatever is in it.
-    let fields = |(separator, line): &(Separator, String)| -> Vec<String> {
-        let is_one = *separator == Separator::Spaces && is_name(line);
-        let parts = if columns == 1 || is_one { vec![line.as_bytes()] } else { separator.split(line.as_bytes()) };
-        parts.iter().map(|field| String::from_utf8_lossy(field).trim().trim_matches('"').to_owned()).collect()
-    };
-    let mut heads = heads.iter().map(fields);
-    let commented = || comments.first().map(fields).filter(|names| names.len() == columns);
-    let names = heads.next().or_else(commented);
-    Ok(Raw { names, units: heads.next(), rows, separator: separator.unwrap_or(Separator::Spaces) })
+fn rises(table: &Table<'_>) -> bool {
+    let value = |text: &[u8]| separator::number(text).or_else(|| timestamp(&String::from_utf8_lossy(text)));
+    let first: Vec<f64> = table.rows.iter().filter_map(|(_, fields)| value(fields.first()?)).collect();
+    first.len() == table.rows.len() && first.len() > 1 && first.windows(2).all(|pair| pair[1] > pair[0])
 }

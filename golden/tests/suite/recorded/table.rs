@@ -35,6 +35,9 @@ fn columns_units_and_blanks() {
         ("# Normal force (N)\n5\n7\n", z(&[Some(5.0), Some(7.0)])),
         ("5\n\n7\n", z(&[Some(5.0), None, Some(7.0)])),
         ("0 5.5\n1 6.5\n", z(&[Some(5.5), Some(6.5)])),
+        ("0,5\n10,6\n20,550\n", z(&[Some(5.0), Some(6.0), Some(550.0)])),
+        ("sep=;\nt;F_z (mN)\n0;5\n", z(&[Some(5e-3)])),
+        ("F_x;F_z (N)\nmN;\n5;6\n", vec![[Some(5e-3), None, Some(6.0)]]),
         ("0,1,2,-3,4,5,6,7\n", vec![[Some(1.0), Some(2.0), Some(-3.0)]]),
         ("status,F_x,F_y,F_z,mu\n0,1.0,2.0,-3.0,0.5\n", vec![[Some(1.0), Some(2.0), Some(-3.0)]]),
     ] {
@@ -60,6 +63,11 @@ fn what_nobody_can_tell_is_refused() {
     for (text, parts) in [
         ("", ["forces.csv", "no line of numbers", "one line for each frame"]),
         ("1,2\n0,5\n", ["2 columns without a header", "nobody can tell", "F_x,F_y,F_z"]),
+        ("550,5\n551,0\n760,25\n", ["2 columns without", "decimal commas?", "write decimal points, or a header"]),
+        ("-5,5\n", ["2 columns without", "decimal commas?", "write decimal points, or a header"]),
+        ("5|2\n6|3\n", ["line 1", "\"|\" separates the values", "commas"]),
+        // A remark between the lines names nothing.
+        ("1,2,3,4,5\n# a,b,F_z,d,e\n6,7,8,9,1\n", ["5 columns without", "nobody can tell", "header"]),
         ("a,b\n1,2\n", ["the columns a, b", "nobody can tell", "write a header"]),
         ("mass\n5\n", ["\"mass\" has no unit", "name the unit", "kg"]),
         ("F_z (stone)\n5\n", ["\"stone\" is no unit of a force", "name the unit", "mN"]),
