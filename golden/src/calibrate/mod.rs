@@ -19,7 +19,7 @@ pub use standard_error::{ERROR_FRAMES, state_errors};
 pub use work::Work;
 
 use crate::design::{Design, Estimator, Input, JointConstants, conditions};
-use crate::estimators::joint::{CUBIC_LIMIT, MAX_HIDDEN, TrainingSet};
+use crate::estimators::joint::{CUBIC_LIMIT, MAX_HIDDEN};
 use crate::scene::SceneError;
 use crate::solver::SolverError;
 use observer::{Observer, Sample};
@@ -44,18 +44,6 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// The work that a training set takes, or a tenth of it, for a first look: errors are up to twice as large.
-    pub fn of(training_set: TrainingSet, quick: bool) -> Self {
-        let work = if quick { Self::quick() } else { Self::default() };
-        match training_set {
-            TrainingSet::Sliding => work,
-            // A contact has one direction only, so there are more of them.
-            TrainingSet::General => {
-                Self { contacts: 2 * work.contacts, samples: work.samples + work.samples / 5, ..work }
-            }
-        }
-    }
-
     /// The same with four times the contacts, frames and steps, as many spare units as there are to be, and pressures
     /// that rise further towards the edge: for a network that must do with few units.
     #[must_use]

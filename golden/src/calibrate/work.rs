@@ -29,10 +29,15 @@ impl Work {
         if let Some(hidden) = self.hidden.filter(|&hidden| hidden > MAX_HIDDEN) {
             return Err(CalibrateError::Hidden { hidden });
         }
-        let usual = Settings::of(training_set, self.quick);
-        let is_sliding = training_set == TrainingSet::Sliding;
-        let units = if is_sliding { usual.hidden.min(HIDDEN_SLIDING) } else { usual.hidden };
-        let settings = Settings { seed: self.seed, hidden: self.hidden.unwrap_or(units), ..usual };
+        let usual = if self.quick { Settings::quick() } else { Settings::default() };
+        let usual = match training_set {
+            TrainingSet::Sliding => Settings { hidden: usual.hidden.min(HIDDEN_SLIDING), ..usual },
+            // A contact has one direction only, so there are more of them.
+            TrainingSet::General => {
+                Settings { contacts: 2 * usual.contacts, samples: usual.samples + usual.samples / 5, ..usual }
+            }
+        };
+        let settings = Settings { seed: self.seed, hidden: self.hidden.unwrap_or(usual.hidden), ..usual };
         Ok(if self.thorough { settings.thorough() } else { settings })
     }
 }
