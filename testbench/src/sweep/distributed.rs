@@ -14,8 +14,8 @@ use serde::Deserialize;
 use super::grid::Job;
 use super::{Sweep, SweepError, SweepScene};
 use crate::accuracy::StatusCounts;
+use crate::co_simulation::Timing;
 use crate::simulate::Cycles;
-use crate::trial::Timing;
 
 /// Folder of the jobs in that of a sweep, one folder a point.
 const JOBS: &str = "jobs";

@@ -12,13 +12,13 @@ use hdl_gen::plan::Plan;
 use hdl_gen::plan::streams::Streams;
 
 use super::distributed::RunReport;
-use super::grid::{Job, filter_text};
+use super::grid::Job;
 use super::point::{AgainstSolver, Calibration, Geometry, Hardware, Point, Verified};
 use super::{SweepError, SweepScene};
 use crate::accuracy::{SolverError, StatusCounts, against_truth};
+use crate::co_simulation::{CoSimulation, model_answers, planned};
 use crate::frame_set::FrameSet;
 use crate::stream_words::{Answer, as_received, decode, packets};
-use crate::trial::{Trial, model_answers, planned};
 
 /// Decides the pauses of the streams and the registers' random start.
 const SEED: u32 = 1;
@@ -55,16 +55,17 @@ pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Poin
             return Ok(point);
         }
     };
-    let trial = Trial::new(&plan, packets, SEED);
+    let co_simulation = CoSimulation::new(&plan, packets, SEED);
     point.verified = Verified::Model;
     if let Proof::Simulation(compiler) = proof {
         let turn = compiler.lock().unwrap_or_else(PoisonError::into_inner);
-        let verdict = trial.run().map_err(|error| SweepError::Run { label: job.label(scene), source: error.into() })?;
+        let verdict =
+            co_simulation.run().map_err(|error| SweepError::Run { label: job.label(scene), source: error.into() })?;
         drop(turn);
         verdict.right().map_err(|fault| SweepError::NotExact { label: job.label(scene), fault: fault.into() })?;
         point.verified = Verified::Rtl;
     }
-    let answers: Vec<Answer> = trial.expected.iter().filter_map(|words| decode(words)).collect();
+    let answers: Vec<Answer> = co_simulation.expected.iter().filter_map(|words| decode(words)).collect();
     let error = SolverError::new(&answers, &solutions);
     let bounded = |value: f64| value.is_finite().then_some(value);
     point.against_solver =
@@ -74,7 +75,7 @@ pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Poin
     point.mean_mu = mean(answers.iter().map(|answer| answer.mu));
     if let Proof::Report(path) = proof {
         RunReport::read(path)
-            .and_then(|report| report.check(&plan, trial.packets.len(), &point.errors, &point.status_counts))
+            .and_then(|report| report.check(&plan, co_simulation.packets.len(), &point.errors, &point.status_counts))
             .map_err(|problem| SweepError::Report { label: job.label(scene), path: path.clone(), problem })?;
         point.verified = Verified::Rtl;
     }
@@ -110,7 +111,7 @@ fn described(job: &Job, scene: &SweepScene, solver: &Solver, solutions: &[Soluti
         scene: scene.name.clone(),
         plan: algorithm.plan,
         kernel: algorithm.kernel,
-        filter: filter_text(&algorithm.filter),
+        filter: algorithm.filter.to_string(),
         estimator: algorithm.estimator,
         calibration: Calibration::of(algorithm),
         coefficient_bits: hardware.coefficient_bits,

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::str::FromStr;
 
-use golden::design::{Design, Estimator, Filter, JointConstants, MatrixFilter, PlanKind};
+use golden::design::{Design, Estimator, Filter, JointConstants, PlanKind};
 use hdl_gen::estimators::has_hardware;
 use hdl_gen::plan::Plan;
 use sha2::{Digest, Sha256};
@@ -91,7 +91,7 @@ impl Job {
         format!(
             "point {} ({}, {} plan, {} estimator, {} lanes, {} x {} bits, scene {})",
             self.key,
-            filter_text(&self.design.algorithm.filter),
+            self.design.algorithm.filter,
             self.design.algorithm.plan,
             self.design.algorithm.estimator,
             hardware.lanes,
@@ -99,16 +99,6 @@ impl Job {
             hardware.data_bits,
             scene.name
         )
-    }
-}
-
-/// A filter in a word or two.
-pub fn filter_text(filter: &Filter) -> String {
-    match filter {
-        Filter::None => MatrixFilter::None.to_string(),
-        Filter::F1 { l } => MatrixFilter::F1 { l: *l }.to_string(),
-        Filter::F2 { p } => MatrixFilter::F2 { p: *p }.to_string(),
-        Filter::F3 { .. } => "f3".to_owned(),
     }
 }
 

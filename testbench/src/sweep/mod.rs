@@ -22,8 +22,8 @@ use rayon::prelude::*;
 use serde::Deserialize;
 use thiserror::Error;
 
+use crate::co_simulation::{CoSimulationError, Fault};
 use crate::frame_set::FrameSet;
-use crate::trial::{Fault, TrialError};
 use golden::progress::Progress;
 
 use evaluate::Proof;
@@ -77,7 +77,7 @@ pub enum SweepError {
         /// The point.
         label: String,
         /// Why.
-        source: Box<TrialError>,
+        source: Box<CoSimulationError>,
     },
     /// The RTL is not the model.
     #[error("{label}: {fault}; please report this design")]

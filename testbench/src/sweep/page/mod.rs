@@ -11,7 +11,6 @@ use tera::{Context, Tera};
 use thiserror::Error;
 
 use crate::figures::{grouped, or_dash, percent};
-use crate::sweep::grid::filter_text;
 use crate::sweep::point::{Calibration, Geometry, Point, Verified, sensor_title, sensors};
 use crate::sweep::{Sweep, SweepError, SweepScene};
 
@@ -178,7 +177,7 @@ fn in_order<'a>(designs: &[&'a Design], recommended: Option<&Point>) -> Vec<&'a 
                 && point.calibration == Calibration::of(algorithm)
         });
         // Of a sweep over filters the point may have one that no design has.
-        let filtered_alike = recommended.is_some_and(|point| point.filter == filter_text(&algorithm.filter));
+        let filtered_alike = recommended.is_some_and(|point| point.filter == algorithm.filter.to_string());
         (!is_recommended, !filtered_alike, algorithm.estimator != Estimator::Joint)
     };
     let mut designs = designs.to_vec();
