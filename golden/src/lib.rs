@@ -25,7 +25,6 @@
 pub mod bank;
 pub mod calibrate;
 pub mod check;
-pub mod choose;
 pub mod contacts;
 pub mod creep;
 pub mod crosstalk;
@@ -59,5 +58,6 @@ pub mod solver;
 pub mod status;
 mod sums;
 pub mod table;
+pub mod tune_filter;
 mod units;
 pub mod words;

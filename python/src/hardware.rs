@@ -10,8 +10,8 @@ use hdl_gen::plan::{Plan, PlanError};
 use hdl_gen::write::{check_folder, write_folder};
 use pyo3::prelude::*;
 use serde_json::json;
+use testbench::co_simulation::{CoSimulation, planned};
 use testbench::stream_words::{Answer, decode, packets};
-use testbench::trial::{Trial, planned};
 
 use crate::arrays::{Forces, Frames};
 use crate::design::Design;
@@ -58,8 +58,8 @@ pub fn simulate<'py>(
     let (forces, report) = without_lock(py, || {
         let said = |error: &dyn Error| error.to_string();
         let plan = planned(design).map_err(|error| said(&error))?;
-        let trial = Trial::new(&plan, packets(plan.streams(), &frames.rows()), seed);
-        let verdict = trial.run().map_err(|error| said(&error))?;
+        let co_simulation = CoSimulation::new(&plan, packets(plan.streams(), &frames.rows()), seed);
+        let verdict = co_simulation.run().map_err(|error| said(&error))?;
         let faults: Vec<String> = verdict.faults().iter().map(ToString::to_string).collect();
         let report = json!({
             "bit_exact": verdict.simulation.is_exact(),

@@ -3,6 +3,7 @@
 
 pub mod accuracy;
 pub mod banks;
+pub mod co_simulation;
 pub mod compare;
 pub mod dut;
 pub mod field_plot;
@@ -16,7 +17,6 @@ pub mod stream_words;
 pub mod svg;
 pub mod sweep;
 pub mod tools;
-pub mod trial;
 pub mod verilate;
 pub mod view;
 pub mod waves;

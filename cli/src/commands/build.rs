@@ -7,7 +7,7 @@ use crate::message;
 use golden::design::Design;
 use hdl_gen::plan::Plan;
 
-use testbench::trial;
+use testbench::co_simulation;
 
 /// Compiles a design's RTL into a shared object and prints its path.
 ///
@@ -24,6 +24,6 @@ pub struct Args {
 /// Compiles a core and returns where it is.
 pub fn run(arguments: &Args) -> message::Result {
     let plan = Plan::new(&Design::load(&arguments.design)?)?;
-    let built = trial::build(&plan)?;
+    let built = co_simulation::build(&plan)?;
     Ok(format!("{}\n", built.library.display()).into())
 }

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use golden::calibrate::{ERROR_FRAMES, Work, calibrate, state_errors};
-use golden::choose::rebase_scenes;
 use golden::design::{Design, Estimator, Expected, Filter, StandardError, TrainingSet};
 use golden::output::write_together;
 use golden::progress::Progress;
 use golden::resolved::{Resolved, folder};
+use golden::tune_filter::rebase_scenes;
 use serde::Serialize;
 
 use super::calibrate_recorded::{self, Recordings};

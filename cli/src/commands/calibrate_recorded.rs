@@ -6,7 +6,6 @@ use golden::calibrate::recorded::{
     Measured, Recorded, RecordedError, fit_forces, fit_uniform, page, read_forces, read_pressures,
 };
 use golden::check::check;
-use golden::choose::rebase_scenes;
 use golden::creep::{self, Creep};
 use golden::design::{Design, Filter};
 use golden::matrices::Matrices;
@@ -14,6 +13,7 @@ use golden::numbers::counted;
 use golden::output::write_together;
 use golden::progress::Progress;
 use golden::resolved::{Resolved, folder, keep_apart};
+use golden::tune_filter::rebase_scenes;
 use serde::Serialize;
 
 use super::recording::{LayoutArguments, Recording, warn};

@@ -3,13 +3,13 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use golden::choose::{Choice, candidate_count, choose, rebase_scenes, reference_frames};
 use golden::design::{Design, Filter};
 use golden::numbers::counted;
 use golden::output::write_together;
 use golden::progress::Progress;
 use golden::resolved::{Resolved, folder, keep_apart};
 use golden::table::Table;
+use golden::tune_filter::{Choice, candidate_count, rebase_scenes, reference_frames, tune_filter};
 use serde::Serialize;
 
 use crate::arguments::design_file;
@@ -82,7 +82,7 @@ pub fn run(args: &Args) -> message::Result {
     let frames = reference_frames(&design, from)?;
     let progress = Progress::new();
     progress.counted_in("filters", "judging", candidate_count(design.sensor.taxels()) as u64);
-    let choice = choose(&design, &frames, &|| progress.step())?;
+    let choice = tune_filter(&design, &frames, &|| progress.step())?;
     drop(progress);
 
     design.algorithm.filter =

@@ -8,9 +8,9 @@ use golden::design::Design;
 use golden::progress::Progress;
 use hdl_gen::plan::Plan;
 use serde_json::Value;
+use testbench::co_simulation::Timing;
 use testbench::frame_set::FrameSet;
 use testbench::run::{Options, page, run_plan};
-use testbench::trial::Timing;
 
 use crate::support::{program, sptfra, workspace};
 

@@ -46,7 +46,7 @@ pub enum Filter {
     F3 {
         /// Scene files to choose by, relative to the design file; not read once the choices are there.
         scenes: Vec<String>,
-        /// The choices, or `None` before the search of [`crate::choose`].
+        /// The choices, or `None` before the search of [`crate::tune_filter`].
         choices: Option<Box<Choices>>,
     },
 }

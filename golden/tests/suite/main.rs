@@ -2,7 +2,6 @@
 
 mod bank;
 mod check;
-mod choose;
 mod clipped;
 mod contact_kinds;
 mod contacts;
@@ -34,4 +33,5 @@ mod separate;
 mod smoothing;
 mod stages;
 mod thin;
+mod tune_filter;
 mod workspace;

@@ -6,9 +6,9 @@ use hdl_gen::model::{BAD_LENGTH, NOT_FINITE};
 use hdl_gen::plan::Plan;
 use serde::Serialize;
 
+use crate::co_simulation::{CoSimulation, pacing, timeout};
 use crate::simulate::SimulationError;
 use crate::stream::{Mode, Traffic, exchange};
-use crate::trial::{Trial, pacing, timeout};
 use crate::verilate::Built;
 
 use super::{Access, Controlled, address};
@@ -25,13 +25,17 @@ pub struct RegisterReport {
     pub wrong: Vec<String>,
 }
 
-/// Runs a trial's packets with pauses on all sides, reads counters meanwhile and every register afterwards. `progress`
+/// Sends a co-simulation's packets with pauses on all sides, reads counters meanwhile and every register afterwards. `progress`
 /// is called once a frame answered.
 ///
 /// # Errors
 /// [`SimulationError`] if a stream or the register port breaks a rule.
-pub fn check(trial: &Trial<'_>, built: &Built, progress: impl Fn()) -> Result<RegisterReport, SimulationError> {
-    let Trial { plan, packets, expected, seed } = trial;
+pub fn check(
+    co_simulation: &CoSimulation<'_>,
+    built: &Built,
+    progress: impl Fn(),
+) -> Result<RegisterReport, SimulationError> {
+    let CoSimulation { plan, packets, expected, seed } = co_simulation;
     let mut core = Controlled::new(built.load(*seed)?, u64::from(*seed))?;
     let [.., mode] = Mode::all(u64::from(*seed));
     let enable = Access::Write { address: address::INTERRUPT_ENABLE, data: 3, strobes: 0xF };

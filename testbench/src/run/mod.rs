@@ -12,11 +12,11 @@ use hdl_gen::plan::Plan;
 use thiserror::Error;
 
 use crate::accuracy::{SolverError, StatusCounts, against_truth};
+use crate::co_simulation::{CoSimulation, CoSimulationError, planned, rtl_sources};
 use crate::frame_set::FrameSet;
 use crate::registers;
 use crate::simulate::frames_to_simulate;
 use crate::stream_words::{Answer, as_received, decode, packets};
-use crate::trial::{Trial, TrialError, planned, rtl_sources};
 use crate::verilate::{Trace, Verilate, verilator_version};
 use crate::waves;
 use golden::progress::Progress;
@@ -27,7 +27,7 @@ use report::Report;
 pub enum RunError {
     /// The design cannot be planned, built or simulated.
     #[error(transparent)]
-    Trial(#[from] TrialError),
+    CoSimulation(#[from] CoSimulationError),
     /// The f64 solver refused the design or a frame.
     #[error(transparent)]
     Solver(#[from] SolveError),
@@ -78,28 +78,30 @@ pub fn run_plan(
 ) -> Result<Report, RunError> {
     let sources = rtl_sources(plan)?;
     progress.stage("computing what the hardware must answer");
-    let trial = Trial::new(plan, packets(plan.streams(), &frames.stress), options.seed);
+    let co_simulation = CoSimulation::new(plan, packets(plan.streams(), &frames.stress), options.seed);
     let solved = |design: &Design| {
-        Solver::new(design)?.solve_in_order(trial.packets.iter().map(|packet| as_received(plan.streams(), packet)))
+        Solver::new(design)?
+            .solve_in_order(co_simulation.packets.iter().map(|packet| as_received(plan.streams(), packet)))
     };
     let solutions = solved(&plan.design.solved_as_one())?;
 
     progress.stage("building the simulation with Verilator");
     let verilate = Verilate::default().with_trace(trace_format(options.trace)?);
-    let built = verilate.build(&sources).map_err(TrialError::from)?;
-    let frame_count = trial.packets.len();
+    let built = verilate.build(&sources).map_err(CoSimulationError::from)?;
+    let frame_count = co_simulation.packets.len();
     progress.counted("simulating", frames_to_simulate(frame_count));
-    let verdict = trial.simulate(&built, options.trace, &|| progress.step()).map_err(TrialError::from)?;
+    let verdict =
+        co_simulation.simulate(&built, options.trace, &|| progress.step()).map_err(CoSimulationError::from)?;
     let registers = if plan.design.hardware.control {
         progress.counted("simulating with register accesses", frame_count as u64);
-        Some(registers::check(&trial, &built, || progress.step()).map_err(TrialError::from)?)
+        Some(registers::check(&co_simulation, &built, || progress.step()).map_err(CoSimulationError::from)?)
     } else {
         None
     };
 
     // Answers of another length are mismatches already; here they count as missing.
     let answers: Vec<Answer> = verdict.simulation.answers.iter().filter_map(|words| decode(words)).collect();
-    let simulator = verilator_version().map_err(TrialError::from)?;
+    let simulator = verilator_version().map_err(CoSimulationError::from)?;
     let mut report = Report::new(plan, &verdict, registers, simulator);
     report.frames_from.clone_from(&frames.origin);
     report.error = SolverError::new(&answers, &solutions);

@@ -3,8 +3,8 @@
 use golden::metrics::{ERROR_NAMES, ErrorSummary};
 
 use super::report::{Published, Report};
+use crate::co_simulation::Timing;
 use crate::figures::{decimals, grouped};
-use crate::trial::Timing;
 use golden::table::{Table, rule};
 
 /// Width of the names, and of each of the values beside them.

@@ -9,10 +9,10 @@ use hdl_gen::plan::Plan;
 use serde::Serialize;
 
 use crate::accuracy::{SolverError, StatusCounts};
+use crate::co_simulation::{Timing, Verdict};
 use crate::compare::Mismatch;
 use crate::registers::RegisterReport;
 use crate::simulate::ModeResult;
-use crate::trial::{Timing, Verdict};
 
 /// The published hardware of the method with a filter, for one frame of a 10 × 10 sensor (Pinto-Salamanca et al., Sensors
 /// 2024): the average time of its sparse designs, the resources of the smallest.

@@ -4,8 +4,8 @@
 use crate::support::faults::{broken, some_faults};
 use crate::support::{by_plan, in_parallel, planned, shipped};
 use golden::design::{Design, Estimator, Outputs, PlanKind};
+use testbench::co_simulation::timeout;
 use testbench::stream::{Traffic, exchange};
-use testbench::trial::timeout;
 
 /// Frames that are sent.
 const FRAMES: usize = 8;

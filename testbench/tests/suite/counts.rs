@@ -9,10 +9,10 @@ use hdl_gen::model::SATURATED;
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use testbench::co_simulation::{model_answers, timeout};
 use testbench::compare::Comparison;
 use testbench::stream::{Mode, Pacing, Traffic, exchange};
 use testbench::stream_words::{decode, encode};
-use testbench::trial::{model_answers, timeout};
 
 use crate::support::{built, in_parallel, planned, shipped, simulate_exactly, workspace};
 

@@ -6,8 +6,8 @@ use hdl_gen::plan::Plan;
 use hdl_gen::plan::dead::DeadPlan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use testbench::co_simulation::model_answers;
 use testbench::stream_words::encode;
-use testbench::trial::model_answers;
 
 use crate::support::effort::half_of;
 use crate::support::faults::broken;

@@ -14,9 +14,9 @@ use golden::solver::Solver;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::product::{Coefficients, Product};
 use testbench::accuracy::SolverError;
+use testbench::co_simulation::model_answers;
 use testbench::frame_set::FrameSet;
 use testbench::stream_words::{decode, encode};
-use testbench::trial::model_answers;
 
 /// Of the largest `|f_z|` of a frame; of resultants, of `|F_z|`.
 const MOST_FIELD_ERROR: f64 = 2e-3;

@@ -17,9 +17,9 @@ use hdl_gen::plan::Plan;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use testbench::accuracy::SolverError;
+use testbench::co_simulation::{model_answers, timeout};
 use testbench::stream::{Traffic, exchange};
 use testbench::stream_words::{Answer, decode, encode};
-use testbench::trial::{model_answers, timeout};
 
 const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
 const SOFTER: Medium = Medium::BondedLayer { poisson: 0.45 };

@@ -6,9 +6,9 @@ use golden::design::{Optimise, Scaling};
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use testbench::co_simulation::{model_answers, timeout};
 use testbench::compare::Comparison;
 use testbench::stream::{Mode, Outcome, Pacing, Pattern, Traffic, exchange};
-use testbench::trial::{model_answers, timeout};
 use testbench::verilate::Built;
 
 use crate::support::effort::{all, share_of, some_of};

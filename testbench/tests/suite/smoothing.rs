@@ -13,10 +13,10 @@ use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::accuracy::SolverError;
+use testbench::co_simulation::{model_answers, timeout};
 use testbench::registers::{Access, Controlled, address};
 use testbench::stream::{Mode, Pacing, Reset, Traffic, exchange};
 use testbench::stream_words::{Answer, decode};
-use testbench::trial::{model_answers, timeout};
 use testbench::verilate::Built;
 
 const NOISE: f64 = 0.01;

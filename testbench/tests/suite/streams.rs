@@ -11,9 +11,9 @@ use hdl_gen::plan::Plan;
 use hdl_gen::plan::streams::Intake;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use testbench::co_simulation::{model_answers, timeout};
 use testbench::compare::Comparison;
 use testbench::stream::{Mode, Traffic, exchange};
-use testbench::trial::{model_answers, timeout};
 use testbench::verilate::Built;
 
 /// A design, planned and compiled.

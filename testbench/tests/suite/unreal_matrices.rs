@@ -11,8 +11,8 @@ use hdl_gen::plan::product::Vector;
 use hdl_gen::plan::schedule::Schedule;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use testbench::co_simulation::model_answers;
 use testbench::stream_words::{Answer, decode};
-use testbench::trial::model_answers;
 
 /// The small design with another plan.
 fn changed(name: &str, change: impl Fn(&mut Plan)) -> Plan {

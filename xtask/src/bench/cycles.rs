@@ -7,10 +7,10 @@ use serde::Serialize;
 use super::BenchError;
 use crate::PLAIN_DESIGN;
 use golden::progress::Progress;
+use testbench::co_simulation::{CoSimulation, planned};
 use testbench::frame_set::FrameSet;
 use testbench::simulate::Cycles;
 use testbench::stream_words::packets;
-use testbench::trial::{Trial, planned};
 
 /// Sides of the square sensors.
 pub const SIDES: [usize; 8] = [4, 6, 8, 10, 12, 16, 24, 32];
@@ -125,7 +125,7 @@ pub(super) fn measure(largest: usize, progress: &Progress) -> Result<Vec<Point>,
 /// The cycles of the sensor's standing frames, if the words are right too.
 fn simulate(plan: &Plan) -> Result<Cycles, BenchError> {
     let frames = FrameSet::standing(&plan.design.sensor)?.stress;
-    let verdict = Trial::new(plan, packets(plan.streams(), &frames), SEED).run()?;
+    let verdict = CoSimulation::new(plan, packets(plan.streams(), &frames), SEED).run()?;
     let wrong = |fault| BenchError::Wrong { design: plan.design.name.clone(), fault };
     Ok(verdict.right().map_err(wrong)?.cycles)
 }

@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use super::{BenchError, Scope};
 use golden::progress::Progress;
+use testbench::co_simulation::planned;
 use testbench::frame_set::FrameSet;
-use testbench::trial::planned;
 
 /// F1: outermost diagonals removed, in percent of the block's side. F2: p.
 const F1_PERCENT: [usize; 3] = [10, 40, 70];

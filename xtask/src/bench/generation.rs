@@ -11,7 +11,7 @@ use super::machine::{forget_peak_memory, peak_memory};
 use super::{BenchError, Scope, median};
 use crate::PLAIN_DESIGN;
 use golden::progress::Progress;
-use testbench::trial::{TrialError, planned};
+use testbench::co_simulation::{CoSimulationError, planned};
 
 /// Repetitions behind a median.
 pub const REPETITIONS: usize = 3;
@@ -62,7 +62,7 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Generati
             let plan = planned(&design)?;
             plans.push(start.elapsed().as_secs_f64());
             let start = Instant::now();
-            let files = emit(&plan).map_err(TrialError::from)?;
+            let files = emit(&plan).map_err(CoSimulationError::from)?;
             emits.push(start.elapsed().as_secs_f64());
             bytes = files.values().map(Vec::len).sum();
         }

@@ -18,7 +18,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use golden::progress::Progress;
-use testbench::trial::{Fault, TrialError};
+use testbench::co_simulation::{CoSimulationError, Fault};
 
 use cells::Cells;
 use cycles::Point;
@@ -36,7 +36,7 @@ pub enum BenchError {
     Design(#[from] DesignError),
     /// A design cannot be planned, built or simulated.
     #[error(transparent)]
-    Trial(#[from] TrialError),
+    CoSimulation(#[from] CoSimulationError),
     /// A design's words or cycles are wrong: it has no figures.
     #[error("{design}: {fault}; please report this design")]
     Wrong {

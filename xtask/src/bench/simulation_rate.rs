@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use super::{BenchError, Scope, median};
 use golden::progress::Progress;
+use testbench::co_simulation::{self, CoSimulationError, planned};
 use testbench::frame_set::FrameSet;
 use testbench::stream::Pacing;
 use testbench::stream_words::packets;
-use testbench::trial::{self, TrialError, planned};
 
 /// Repetitions behind a median.
 pub const REPETITIONS: usize = 5;
@@ -47,13 +47,13 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Rate>, B
         let plan = planned(design)?;
         let set = FrameSet::standing(&design.sensor)?.as_delivered(design);
         let packets = packets(plan.streams(), &set.stress);
-        let built = trial::build(&plan)?;
-        let mut core = built.load(SEED).map_err(TrialError::from)?;
+        let built = co_simulation::build(&plan)?;
+        let mut core = built.load(SEED).map_err(CoSimulationError::from)?;
         progress.stage(format!("simulating {path}"));
         let mut run = |count: usize| -> Result<(u64, f64), BenchError> {
             let packets: Vec<Vec<u32>> = packets.iter().cycle().take(count).cloned().collect();
             let start = Instant::now();
-            let outcome = trial::send(&mut core, &plan, &packets, Pacing::BackToBack)?;
+            let outcome = co_simulation::send(&mut core, &plan, &packets, Pacing::BackToBack)?;
             Ok((outcome.cycles, start.elapsed().as_secs_f64()))
         };
         let (_, seconds) = run(TRIAL_FRAMES)?;

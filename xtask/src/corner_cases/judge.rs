@@ -17,8 +17,8 @@ use serde::Serialize;
 use super::cases::Case;
 use super::float32::Single;
 use testbench::accuracy::{StatusCounts, against_truth};
+use testbench::co_simulation::model_answers;
 use testbench::stream_words::{Answer, as_received, decode, packets};
-use testbench::trial::model_answers;
 
 /// A resultant beyond this times what the stress would mean as a pressure, `sum |b|` times a taxel's area, is beyond
 /// reason.

@@ -13,11 +13,11 @@ use thiserror::Error;
 use cases::Case;
 use golden::progress::Progress;
 use judge::Row;
-use testbench::trial::TrialError;
+use testbench::co_simulation::CoSimulationError;
 
 /// Why there is no table.
 #[derive(Debug, Error)]
-pub enum HardError {
+pub enum CornerCasesError {
     /// A case's design is wrong; a defect of the table.
     #[error(transparent)]
     Design(#[from] DesignError),
@@ -26,7 +26,7 @@ pub enum HardError {
     Scene(#[from] SceneError),
     /// A design's RTL cannot be built or simulated.
     #[error(transparent)]
-    Trial(#[from] TrialError),
+    CoSimulation(#[from] CoSimulationError),
 }
 
 /// How much of the table.
@@ -41,8 +41,8 @@ pub struct Scope {
 /// Judges all cases, on all cores: by the line search, then by the joint one.
 ///
 /// # Errors
-/// [`HardError`] if a case cannot be made, or its RTL not be simulated.
-pub fn table(scope: Scope, progress: &Progress) -> Result<Vec<Row>, HardError> {
+/// [`CornerCasesError`] if a case cannot be made, or its RTL not be simulated.
+pub fn table(scope: Scope, progress: &Progress) -> Result<Vec<Row>, CornerCasesError> {
     let mut cases: Vec<Case> = cases::all(scope.large)?;
     cases.extend(cases::by_joint(&cases)?);
     progress.counted_in("cases", "hard cases", cases.len() as u64);

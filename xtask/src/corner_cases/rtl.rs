@@ -5,8 +5,8 @@ use hdl_gen::plan::Plan;
 
 use super::cases::Case;
 use golden::progress::Progress;
+use testbench::co_simulation::{CoSimulation, CoSimulationError, Timing, Verdict};
 use testbench::stream_words::packets;
-use testbench::trial::{Timing, Trial, TrialError, Verdict};
 
 /// Decides the pauses of the streams and the registers' random start.
 const SEED: u32 = 1;
@@ -15,8 +15,8 @@ const SEED: u32 = 1;
 /// the plan; `None` where there is no hardware.
 ///
 /// # Errors
-/// [`TrialError`] if a design's RTL cannot be built or simulated.
-pub fn check(cases: &[Case], progress: &Progress) -> Result<Vec<Option<bool>>, TrialError> {
+/// [`CoSimulationError`] if a design's RTL cannot be built or simulated.
+pub fn check(cases: &[Case], progress: &Progress) -> Result<Vec<Option<bool>>, CoSimulationError> {
     let mut designs: Vec<(&Design, Vec<usize>)> = Vec::new();
     for (index, case) in cases.iter().enumerate() {
         match designs.iter_mut().find(|(design, _)| **design == case.design) {
@@ -39,9 +39,9 @@ pub fn check(cases: &[Case], progress: &Progress) -> Result<Vec<Option<bool>>, T
     Ok(exact)
 }
 
-fn of_design(plan: &Plan, cases: &[&Case]) -> Result<Vec<bool>, TrialError> {
+fn of_design(plan: &Plan, cases: &[&Case]) -> Result<Vec<bool>, CoSimulationError> {
     let frames: Vec<Vec<f64>> = cases.iter().flat_map(|case| &case.frames).cloned().collect();
-    let trial = Trial::new(plan, packets(plan.streams(), &frames), SEED);
+    let trial = CoSimulation::new(plan, packets(plan.streams(), &frames), SEED);
     let Verdict { simulation, timing, .. } = trial.run()?;
     let mut first = 0;
     let free: Vec<bool> = cases

@@ -21,9 +21,9 @@ pub use sites::{Kind, Mutation, all};
 
 use crate::stress::{BATCH, run_batch};
 use golden::progress::Progress;
+use testbench::co_simulation::{CoSimulation, CoSimulationError, planned, rtl_sources};
 use testbench::frame_set::FrameSet;
 use testbench::stream_words::packets;
-use testbench::trial::{Trial, TrialError, planned, rtl_sources};
 use testbench::verilate::{BuildError, Built, RtlSources, Verilate, translation};
 
 /// Batches of `cargo xtask stress` after the standing frames.
@@ -136,7 +136,7 @@ impl fmt::Display for Report {
 pub enum MutantsError {
     /// The design as generated cannot be planned or built.
     #[error(transparent)]
-    Trial(#[from] TrialError),
+    CoSimulation(#[from] CoSimulationError),
     /// The standing frames cannot be made.
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -157,7 +157,7 @@ pub fn mutants(design: &Design, options: &Options, progress: &Progress) -> Resul
     let plan = planned(design)?;
     let sources = rtl_sources(&plan)?;
     let ordeal = Ordeal::new(&plan, &sources, options)?;
-    if let Some(reason) = ordeal.complaint(&sources).map_err(TrialError::from)? {
+    if let Some(reason) = ordeal.complaint(&sources).map_err(CoSimulationError::from)? {
         return Err(MutantsError::Unsound(reason));
     }
     progress.counted("mutants", options.count as u64);
@@ -210,7 +210,7 @@ fn without_tension(stress: &[Vec<f64>]) -> Vec<Vec<f64>> {
 
 /// What every mutant goes through: the trial that every design goes through, then stress.
 struct Ordeal<'a> {
-    trial: Trial<'a>,
+    trial: CoSimulation<'a>,
     sources: &'a RtlSources,
     /// Of the sources.
     translation: String,
@@ -225,8 +225,8 @@ impl<'a> Ordeal<'a> {
         frames.stress.extend(without_tension(&frames.stress));
         let frames = frames.as_delivered(&plan.design);
         let cache = tempfile::tempdir().map_err(MutantsError::Folder)?;
-        let translation = translation(sources).map_err(TrialError::from)?;
-        let trial = Trial::new(plan, packets(plan.streams(), &frames.stress), options.seed as u32);
+        let translation = translation(sources).map_err(CoSimulationError::from)?;
+        let trial = CoSimulation::new(plan, packets(plan.streams(), &frames.stress), options.seed as u32);
         Ok(Self { trial, sources, translation, options, cache })
     }
 

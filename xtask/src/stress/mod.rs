@@ -29,9 +29,9 @@ use processor::Processor;
 
 use golden::progress::Progress;
 use judge::judge;
+use testbench::co_simulation::{self, CoSimulationError, planned, timeout};
 use testbench::dut::Dut;
 use testbench::stream::{Pacing, Pattern, Reset, StreamError, Traffic, exchange};
-use testbench::trial::{self, TrialError, planned, timeout};
 
 /// Frames of a batch.
 pub const BATCH: u64 = 1000;
@@ -129,7 +129,7 @@ pub enum StressError {
     NoFrames,
     /// The design cannot be planned, built or loaded.
     #[error(transparent)]
-    Trial(#[from] TrialError),
+    CoSimulation(#[from] CoSimulationError),
     /// The streams failed.
     #[error("batch {batch}: {source}")]
     Stream {
@@ -159,12 +159,13 @@ pub fn stress(design: &Design, options: &Options, progress: &Progress) -> Result
     progress.stage("planning");
     let plan = planned(design)?;
     progress.stage("building the simulation with Verilator");
-    let built = trial::build(&plan)?;
+    let built = co_simulation::build(&plan)?;
     progress.counted("simulating", options.frames);
     let batches = options.frames.div_ceil(BATCH);
     let one = |batch: u64| {
         let frames = BATCH.min(options.frames - batch * BATCH);
-        let core = built.load((options.seed ^ batch) as u32).map_err(|error| StressError::Trial(error.into()))?;
+        let core =
+            built.load((options.seed ^ batch) as u32).map_err(|error| StressError::CoSimulation(error.into()))?;
         run_batch(&plan, core, batch, frames, options.seed, &|| progress.step())
     };
     let mut report = Report { design: plan.design.name.clone(), seed: options.seed, ..Report::default() };

@@ -1,4 +1,4 @@
-//! Hard cases: nothing wrong in silence, and the RTL on the same frames.
+//! Corner cases: nothing wrong in silence, and the RTL on the same frames.
 
 use std::fs;
 use std::path::Path;

@@ -11,10 +11,10 @@ use hdl_gen::model::{
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use testbench::co_simulation::timeout;
 use testbench::compare::Comparison;
 use testbench::stream::{Mode, Outcome, Pattern, Traffic, exchange};
 use testbench::stream_words::{Answer, decode, encode};
-use testbench::trial::timeout;
 use testbench::verilate::Built;
 
 use crate::support::effort::share_of;

@@ -3,8 +3,8 @@
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use testbench::co_simulation::timeout;
 use testbench::stream::{Mode, Pacing, Pattern, Reset, Traffic};
-use testbench::trial::timeout;
 
 use crate::support::effort::some_of;
 use crate::support::in_parallel;
@@ -16,7 +16,7 @@ fn step(plan: &Plan) -> usize {
     1 + 2 * (plan.timeline.latency_cycles / LONG_FRAME) as usize
 }
 
-/// Resets of one simulation. After a reset the core is a new one, so that a trial begins where the one before has ended.
+/// Resets of one simulation. After a reset the core is a new one, so that each run begins where the one before has ended.
 const CHAIN: usize = 24;
 
 /// Every design with the moments of its trials, so many cycles apart, in chains.

@@ -5,9 +5,9 @@ use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::banks::random_bank;
+use testbench::co_simulation::model_answers;
 use testbench::dut::{Core, Inputs};
 use testbench::registers::{Access, address};
-use testbench::trial::model_answers;
 
 use super::{
     ACTIVE, BUSY, COUNTERS, OUT_OF_RANGE, WRONG_CRC, counts, design, errors, judged, load, perform, read_back, subject,

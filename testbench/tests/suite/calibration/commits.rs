@@ -4,8 +4,8 @@ use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::banks::random_bank;
+use testbench::co_simulation::timeout;
 use testbench::stream::{Mode, Pattern, Traffic};
-use testbench::trial::timeout;
 use testbench::verilate::Built;
 
 use super::{BUSY, Subject, core, counts, errors, judged, judged_in, load, subject, version};

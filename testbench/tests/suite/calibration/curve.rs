@@ -9,11 +9,11 @@ use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::banks::{random_bank, random_curve};
+use testbench::co_simulation::timeout;
 use testbench::frame_set::FrameSet;
 use testbench::registers::address;
 use testbench::run::{Options, run};
 use testbench::stream::{Mode, Traffic};
-use testbench::trial::timeout;
 
 use super::commits::commits_at_every_moment;
 use super::{Subject, core, errors, judged, judged_in, load, perform, read_back, version};

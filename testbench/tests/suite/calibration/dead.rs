@@ -10,8 +10,8 @@ use hdl_gen::plan::dead::{DeadPlan, MOST_WEIGHT};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::banks::{random_bank, random_map};
+use testbench::co_simulation::model_answers;
 use testbench::registers::address;
-use testbench::trial::model_answers;
 
 use super::commits::commits_at_every_moment;
 use super::{

@@ -15,10 +15,10 @@ use hdl_gen::plan::Plan;
 use hdl_gen::plan::calibration::{Bank, CalibrationPlan};
 use hdl_gen::plan::words::{COUNTERS, TIMESTAMP};
 use rand_chacha::ChaCha8Rng;
+use testbench::co_simulation::timeout;
 use testbench::dut::{Beat, Core, Inputs};
 use testbench::registers::{Access, Controlled, address};
 use testbench::stream::{Traffic, exchange};
-use testbench::trial::timeout;
 use testbench::verilate::Built;
 
 pub use crate::support::calibrated::design;

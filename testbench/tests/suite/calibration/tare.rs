@@ -4,9 +4,9 @@ use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::banks::random_bank;
+use testbench::co_simulation::timeout;
 use testbench::registers::{Access, address};
 use testbench::stream::{Mode, Pattern, Traffic, exchange};
-use testbench::trial::timeout;
 
 use super::{
     BAD_FRAME, BUSY, NOT_AT_REST, OUT_OF_RANGE, Subject, core, counts, errors, judge, load, perform, read_back, send,

@@ -16,8 +16,8 @@ use hdl_gen::plan::{Plan, words};
 use hdl_gen::timing::latency;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use testbench::co_simulation::{model_answers, timeout};
 use testbench::stream::{Mode, Pattern, Traffic, exchange};
-use testbench::trial::{model_answers, timeout};
 
 use crate::support::effort::half_of;
 use crate::support::{built, by_plan, designs, frames, in_parallel, planned, shipped, simulate_exactly, with_joint};

@@ -8,8 +8,8 @@ use golden::design::{Design, Outputs};
 use hdl_gen::blocks::registers::MAP_VERSION;
 use hdl_gen::emit::emit;
 use hdl_gen::plan::Plan;
+use testbench::co_simulation::model_answers;
 use testbench::tools;
-use testbench::trial::model_answers;
 
 use super::{DRIVER, FORCES, MACHINE, SANITIZED, compile};
 use crate::docs::{commands, lines_of};

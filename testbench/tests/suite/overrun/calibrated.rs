@@ -4,9 +4,9 @@ use golden::design::CalibrationIn;
 use hdl_gen::model::{DROPPED, Model};
 use hdl_gen::plan::calibration::Bank;
 use hdl_gen::plan::words::COUNTERS;
+use testbench::co_simulation::timeout;
 use testbench::registers::{Access, Controlled, address};
 use testbench::stream::{Outcome, Pacing, Traffic, exchange};
-use testbench::trial::timeout;
 
 use super::{Subject, packets, subjects};
 

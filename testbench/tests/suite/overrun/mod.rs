@@ -12,9 +12,9 @@ use hdl_gen::model::{DROPPED, Model};
 use hdl_gen::plan::Plan;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use testbench::co_simulation::timeout;
 use testbench::registers::{Controlled, address};
 use testbench::stream::{Mode, Outcome, Pacing, Traffic, exchange};
-use testbench::trial::timeout;
 use testbench::verilate::Built;
 
 use crate::support::effort::{half_of, some_of};

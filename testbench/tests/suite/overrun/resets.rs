@@ -4,10 +4,10 @@ use hdl_gen::model::{DROPPED, Model};
 use hdl_gen::plan::words::TIMESTAMP;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use testbench::co_simulation::timeout;
 use testbench::dut::{Beat, Core, Inputs};
 use testbench::registers::{Access, Controlled, address};
 use testbench::stream::{Checker, Mode, Pattern};
-use testbench::trial::timeout;
 
 use super::{Subject, packets, subjects};
 use crate::support::in_parallel;

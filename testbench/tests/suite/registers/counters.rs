@@ -3,10 +3,10 @@
 use hdl_gen::model::{BAD_LENGTH, NOT_FINITE};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use testbench::co_simulation::{CoSimulation, timeout};
 use testbench::dut::{Core, Inputs};
 use testbench::registers::{Access, Controlled, address, check};
 use testbench::stream::{Pacing, Traffic, exchange};
-use testbench::trial::{Trial, timeout};
 
 use super::{mixed, subjects};
 use crate::support::faults::{broken, some_faults};
@@ -18,10 +18,10 @@ fn frames_and_errors_are_counted() {
     in_parallel(&cases, |&(subject, seed)| {
         let plan = &subject.plan;
         let packets = mixed(plan, 150, &mut ChaCha8Rng::seed_from_u64(u64::from(seed)));
-        let trial = Trial::new(plan, packets, seed);
-        let bad = trial.expected.iter().filter(|words| words[0] & (NOT_FINITE | BAD_LENGTH) != 0).count();
+        let co_simulation = CoSimulation::new(plan, packets, seed);
+        let bad = co_simulation.expected.iter().filter(|words| words[0] & (NOT_FINITE | BAD_LENGTH) != 0).count();
         assert!((20..130).contains(&bad), "{bad} bad frames");
-        let report = check(&trial, &subject.built, || ()).expect("no rule broken");
+        let report = check(&co_simulation, &subject.built, || ()).expect("no rule broken");
         assert_eq!(report.wrong, Vec::<String>::new(), "{}, seed {seed}", plan.design.name);
         assert!(report.accesses > 100, "{}", report.accesses);
     });
@@ -96,7 +96,7 @@ fn a_wrong_count_is_noticed() {
     let subject = &subjects()[0];
     let plan = &subject.plan;
     let packets = mixed(plan, 40, &mut ChaCha8Rng::seed_from_u64(8));
-    let trial = Trial::new(plan, packets, 1);
+    let co_simulation = CoSimulation::new(plan, packets, 1);
     let faults = [
         ("(status[5:4] != 2'd0)", "(status[4] != 1'd0)"),
         ("now - beginnings[oldest] + 32'd1", "now - beginnings[oldest]"),
@@ -106,7 +106,7 @@ fn a_wrong_count_is_noticed() {
     ];
     for (from, to) in some_faults(faults, |&(from, _)| ("sptfra_frame_meter", from)) {
         let built = broken(plan, "sptfra_frame_meter", from, to);
-        let report = check(&trial, &built, || ()).expect("no rule broken");
+        let report = check(&co_simulation, &built, || ()).expect("no rule broken");
         assert_ne!(report.wrong, Vec::<String>::new(), "{to}");
     }
 }

@@ -6,10 +6,10 @@ use hdl_gen::model::Model;
 use hdl_gen::plan::words::TIMESTAMP;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use testbench::co_simulation::timeout;
 use testbench::dut::{Beat, Core, Inputs};
 use testbench::registers::{Access, Controlled, address};
 use testbench::stream::{Checker, Mode};
-use testbench::trial::timeout;
 use testbench::verilate::Built;
 
 use super::{Subject, mixed, subjects};

@@ -3,7 +3,7 @@
 use std::fs;
 
 use hdl_gen::plan::Plan;
-use testbench::trial::rtl_sources;
+use testbench::co_simulation::rtl_sources;
 use testbench::verilate::{Built, Verilate};
 
 use super::effort::some_of;

@@ -21,8 +21,8 @@ use std::thread;
 pub use designs::design as shipped;
 use golden::design::{Correction, Design, Estimator, Outputs, PlanKind, StandardError};
 use hdl_gen::plan::Plan;
+use testbench::co_simulation::{CoSimulation, rtl_sources};
 use testbench::simulate::Simulation;
-use testbench::trial::{Trial, rtl_sources};
 use testbench::verilate::{Built, Verilate};
 
 /// A file of the workspace.
@@ -114,7 +114,7 @@ pub fn built(plan: &Plan) -> Built {
 /// # Errors
 /// What is wrong, with the first words that differ.
 pub fn simulate_exactly(plan: &Plan, built: &Built, packets: &[Vec<u32>], seed: u32) -> Result<Simulation, String> {
-    let trial = Trial::new(plan, packets.to_vec(), seed);
+    let trial = CoSimulation::new(plan, packets.to_vec(), seed);
     let verdict = trial.simulate(built, None, &|| ()).map_err(|error| error.to_string())?;
     let words: u64 = trial.expected.iter().map(|words| words.len() as u64).sum();
     assert!(verdict.simulation.modes.iter().all(|mode| mode.comparison.words >= words), "every word is compared");

@@ -4,8 +4,8 @@ use hdl_gen::model::{DROPPED, Model};
 use hdl_gen::plan::Plan;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use testbench::co_simulation::timeout;
 use testbench::stream::{Outcome, Reset, Traffic, exchange};
-use testbench::trial::timeout;
 use testbench::verilate::Built;
 
 use super::frames;

@@ -8,7 +8,7 @@ use golden::scene::{Contact, Kind, Medium, Scene, SensorErrors, Shape, Traction}
 
 mod sensor;
 
-use super::HardError;
+use super::CornerCasesError;
 use crate::PLAIN_DESIGN;
 use testbench::frame_set::FrameSet;
 
@@ -114,7 +114,7 @@ impl Cases {
         name: impl Into<String>,
         algorithm: &str,
         scene: &Scene,
-    ) -> Result<&mut Case, HardError> {
+    ) -> Result<&mut Case, CornerCasesError> {
         let FrameSet { stress: frames, truth, .. } = FrameSet::of_scene(scene, "")?;
         let design = design(&scene.sensor, algorithm)?;
         let last = self.0.len();
@@ -122,7 +122,7 @@ impl Cases {
         Ok(&mut self.0[last])
     }
 
-    fn frames(&mut self, group: &'static str, name: &str, frames: Vec<Vec<f64>>) -> Result<(), HardError> {
+    fn frames(&mut self, group: &'static str, name: &str, frames: Vec<Vec<f64>>) -> Result<(), CornerCasesError> {
         let design = design(&sensor_1(), "")?;
         self.0.push(Case { group, name: name.to_owned(), design, frames, truth: None, contacts: None });
         Ok(())
@@ -132,8 +132,8 @@ impl Cases {
 /// All cases; without the `large` ones those that take milliseconds.
 ///
 /// # Errors
-/// [`HardError`] if a scene cannot be computed.
-pub fn all(large: bool) -> Result<Vec<Case>, HardError> {
+/// [`CornerCasesError`] if a scene cannot be computed.
+pub fn all(large: bool) -> Result<Vec<Case>, CornerCasesError> {
     let mut cases = Cases(Vec::new());
     depths(&mut cases)?;
     if large {
@@ -156,8 +156,8 @@ pub fn all(large: bool) -> Result<Vec<Case>, HardError> {
 /// regularisation are theirs, else with those that a new design gets: gain and friction fitted, no correction.
 ///
 /// # Errors
-/// [`HardError::Design`] if a shipped design cannot be read.
-pub fn by_joint(cases: &[Case]) -> Result<Vec<Case>, HardError> {
+/// [`CornerCasesError::Design`] if a shipped design cannot be read.
+pub fn by_joint(cases: &[Case]) -> Result<Vec<Case>, CornerCasesError> {
     let shipped = |[text, file, weights]: [&str; 3]| Design::from_parts(text, "joint", &[(file, weights.to_owned())]);
     let calibrated = CALIBRATED.map(shipped).into_iter().collect::<Result<Vec<_>, _>>()?;
     // One fit serves all the cases of a design.
@@ -189,7 +189,7 @@ pub fn by_joint(cases: &[Case]) -> Result<Vec<Case>, HardError> {
     Ok(cases.iter().map(of).collect())
 }
 
-fn depths(cases: &mut Cases) -> Result<(), HardError> {
+fn depths(cases: &mut Cases) -> Result<(), CornerCasesError> {
     for share in [0.0, NOISE] {
         for ratio in DEPTHS {
             let sensor = square(10, 4.0 * ratio);
@@ -207,7 +207,7 @@ fn depths(cases: &mut Cases) -> Result<(), HardError> {
     Ok(())
 }
 
-fn contacts(cases: &mut Cases) -> Result<(), HardError> {
+fn contacts(cases: &mut Cases) -> Result<(), CornerCasesError> {
     let sensor = sensor_1();
     let swept = |contacts| scene(&sensor, contacts, all_directions(), SensorErrors::default());
     let needle = |x: f64, y: f64| Contact { centre_m: [x * 1e-3, y * 1e-3], ..contact(&sensor, 0.3) };
@@ -244,7 +244,7 @@ fn contacts(cases: &mut Cases) -> Result<(), HardError> {
 }
 
 /// Contacts anywhere within the grid of kinds that no constant was fitted to.
-fn kinds(cases: &mut Cases) -> Result<(), HardError> {
+fn kinds(cases: &mut Cases) -> Result<(), CornerCasesError> {
     let sensor = sensor_1();
     for kind in Kind::ALL {
         let made = kind.frames(&sensor, 0.5, 0..DIRECTIONS as u64)?;
@@ -256,7 +256,7 @@ fn kinds(cases: &mut Cases) -> Result<(), HardError> {
     Ok(())
 }
 
-fn directions(cases: &mut Cases) -> Result<(), HardError> {
+fn directions(cases: &mut Cases) -> Result<(), CornerCasesError> {
     let sensor = sensor_1();
     let swept = |sweep| scene(&sensor, vec![contact(&sensor, 7.0)], sweep, SensorErrors::default());
     let every = |first: f64, step: f64| (0..4).map(move |quarter| first + step * f64::from(quarter));
@@ -271,7 +271,7 @@ fn directions(cases: &mut Cases) -> Result<(), HardError> {
 }
 
 /// The same contact, louder and fainter.
-fn ends_of_range(cases: &mut Cases) -> Result<(), HardError> {
+fn ends_of_range(cases: &mut Cases) -> Result<(), CornerCasesError> {
     let sensor = sensor_1();
     let swept = scene(&sensor, vec![contact(&sensor, 7.0)], all_directions(), SensorErrors::default());
     let design = design(&sensor, "")?;
@@ -305,7 +305,7 @@ fn ends_of_range(cases: &mut Cases) -> Result<(), HardError> {
     cases.frames("range", "the largest float32", vec![all(-largest), checkered(largest)])
 }
 
-fn without_answer(cases: &mut Cases) -> Result<(), HardError> {
+fn without_answer(cases: &mut Cases) -> Result<(), CornerCasesError> {
     let taxels = sensor_1().taxels();
     let one = |value: f64| (0..taxels).map(|taxel| if taxel == 44 { value } else { 0.0 }).collect::<Vec<f64>>();
     cases.frames("frame", "no contact", vec![vec![0.0; taxels], vec![-0.0; taxels], vec![-1e-3; taxels]])?;

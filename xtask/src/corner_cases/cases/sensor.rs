@@ -2,14 +2,14 @@
 
 use golden::scene::{Converter, Scene, SensorErrors};
 
-use super::{Case, Cases, HardError, SEED, all_directions, contact, noise, scene, sensor_1};
+use super::{Case, Cases, CornerCasesError, SEED, all_directions, contact, noise, scene, sensor_1};
 
 /// Largest offset of a taxel, as a share of the largest stress.
 const OFFSET: f64 = 0.02;
 /// Frames of a tare, and the noise of each of them.
 const TARE: (u64, f64) = (16, 0.002);
 
-pub(super) fn errors(cases: &mut Cases) -> Result<(), HardError> {
+pub(super) fn errors(cases: &mut Cases) -> Result<(), CornerCasesError> {
     let swept = |errors| swept(all_directions(), errors);
     for percent in [0.05, 0.1, 0.2, 0.5, 1.0, 2.0] {
         cases.scene("sensor", format!("noise {percent} %"), "", &swept(noise(percent / 100.0)))?;
@@ -35,7 +35,7 @@ fn swept(sweep_deg: Vec<f64>, errors: SensorErrors) -> Scene {
 }
 
 /// Offsets of the taxels as they are, and what a tare leaves of them: the mean of the noise of its frames.
-fn offsets(cases: &mut Cases) -> Result<(), HardError> {
+fn offsets(cases: &mut Cases) -> Result<(), CornerCasesError> {
     let still = || swept(all_directions(), SensorErrors::default());
     let case = cases.scene("sensor", format!("offsets of up to {} %, no tare", 100.0 * OFFSET), "", &still())?;
     let peak = case.frames.iter().flatten().fold(0.0_f64, |most, stress| most.max(stress.abs()));

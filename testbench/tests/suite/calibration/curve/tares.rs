@@ -3,10 +3,10 @@
 use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use testbench::co_simulation::timeout;
 use testbench::dut::{Core, Inputs};
 use testbench::registers::{Access, address};
 use testbench::stream::{Mode, Pattern, Traffic, exchange};
-use testbench::trial::timeout;
 
 use super::super::{core, errors, judge, load, perform, read_back, send, wait};
 use super::{counts, others, random_bank_and_curve, subject};

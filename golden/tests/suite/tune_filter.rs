@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::designs::design;
-use golden::choose::{self, Choice, candidate_count, mean_error, reference_frames};
 use golden::design::{Choices, Design, Estimator, Filter, MatrixFilter};
 use golden::filter::FilteredMatrices;
 use golden::matrices::{Matrices, MatrixName};
 use golden::scene::{Scene, SceneFrame};
 use golden::solver::Solver;
+use golden::tune_filter::{self, Choice, candidate_count, mean_error, reference_frames};
 
 /// The folder of the designs with filter F3.
 fn designs() -> PathBuf {
@@ -21,7 +21,7 @@ fn search(design: &Design, frames: &[SceneFrame]) -> Choice {
     let tick = || {
         ticks.fetch_add(1, Ordering::Relaxed);
     };
-    let choice = choose::choose(design, frames, &tick).unwrap();
+    let choice = tune_filter::tune_filter(design, frames, &tick).unwrap();
     assert_eq!(ticks.into_inner(), choice.candidates.len());
     assert_eq!(candidate_count(design.sensor.taxels()), choice.candidates.len());
     choice

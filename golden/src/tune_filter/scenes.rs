@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use super::ChooseError;
+use super::TuneFilterError;
 use crate::design::{Design, Filter};
 use crate::scene::{Scene, SceneFrame};
 
@@ -11,23 +11,23 @@ use crate::scene::{Scene, SceneFrame};
 ///
 /// # Errors
 ///
-/// [`ChooseError::OtherFilter`] and [`ChooseError::NoScenes`] for a design without any,
-/// [`ChooseError::Scene`] and [`ChooseError::OtherSensor`] for scenes that are wrong.
-pub fn reference_frames(design: &Design, folder: &Path) -> Result<Vec<SceneFrame>, ChooseError> {
+/// [`TuneFilterError::OtherFilter`] and [`TuneFilterError::NoScenes`] for a design without any,
+/// [`TuneFilterError::Scene`] and [`TuneFilterError::OtherSensor`] for scenes that are wrong.
+pub fn reference_frames(design: &Design, folder: &Path) -> Result<Vec<SceneFrame>, TuneFilterError> {
     let name = || design.name.clone();
     let Filter::F3 { scenes, .. } = &design.algorithm.filter else {
-        return Err(ChooseError::OtherFilter { name: name() });
+        return Err(TuneFilterError::OtherFilter { name: name() });
     };
     if scenes.is_empty() {
-        return Err(ChooseError::NoScenes { name: name() });
+        return Err(TuneFilterError::NoScenes { name: name() });
     }
     let mut frames = Vec::new();
     for scene in scenes {
         let path = folder.join(scene);
-        let failed = |source| ChooseError::Scene { path: path.clone(), source };
+        let failed = |source| TuneFilterError::Scene { path: path.clone(), source };
         let scene = Scene::load(&path).map_err(failed)?;
         if scene.sensor != design.sensor {
-            return Err(ChooseError::OtherSensor { path, name: name() });
+            return Err(TuneFilterError::OtherSensor { path, name: name() });
         }
         frames.extend(scene.frames().map_err(failed)?);
     }

@@ -21,7 +21,7 @@ use crate::solver::{Solver, SolverError};
 
 /// Why no choice can be made.
 #[derive(Debug, thiserror::Error)]
-pub enum ChooseError {
+pub enum TuneFilterError {
     /// The design has another filter.
     #[error(
         "{name}: the filter is not f3, so there is nothing to choose; write \
@@ -147,9 +147,13 @@ fn candidate_filters(taxels: usize) -> Vec<MatrixFilter> {
 ///
 /// # Errors
 ///
-/// [`ChooseError::Matrices`] for a sensor whose matrices are singular, [`ChooseError::Frames`] for frames of another
-/// sensor, [`ChooseError::Filter`] for a candidate that leaves a row without entries.
-pub fn choose(design: &Design, frames: &[SceneFrame], tick: &(dyn Fn() + Sync)) -> Result<Choice, ChooseError> {
+/// [`TuneFilterError::Matrices`] for a sensor whose matrices are singular, [`TuneFilterError::Frames`] for frames of another
+/// sensor, [`TuneFilterError::Filter`] for a candidate that leaves a row without entries.
+pub fn tune_filter(
+    design: &Design,
+    frames: &[SceneFrame],
+    tick: &(dyn Fn() + Sync),
+) -> Result<Choice, TuneFilterError> {
     // Scenes are in pascals, whatever the sensor counts.
     let design = &Design { input: Input::default(), ..design.clone() };
     let matrices = Matrices::of(design)?;
@@ -167,7 +171,7 @@ pub fn choose(design: &Design, frames: &[SceneFrame], tick: &(dyn Fn() + Sync)) 
             tick();
             Ok(Candidate { matrix, filter, nnz, e_mu, cost: e_mu * nnz as f64, chosen: false })
         })
-        .collect::<Result<Vec<_>, ChooseError>>()?;
+        .collect::<Result<Vec<_>, TuneFilterError>>()?;
     for of_matrix in candidates.chunks_mut(filters.len()) {
         // `min_by` keeps the first of equal ones.
         if let Some(best) = of_matrix.iter_mut().min_by(|a, b| a.cost.total_cmp(&b.cost)) {

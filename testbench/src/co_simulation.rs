@@ -1,4 +1,4 @@
-//! One trial of a design: its RTL is built, frames go through it, words and cycles are judged. Whoever asks whether
+//! Co-simulation of a design: its RTL is built, frames go through it, words and cycles are judged. Whoever asks whether
 //! hardware is right asks here.
 
 use std::fmt;
@@ -18,9 +18,9 @@ use crate::simulate::{Cycles, Job, Simulation, SimulationError, simulate};
 use crate::stream::{Outcome, Pacing, Traffic, exchange};
 use crate::verilate::{BuildError, Built, RtlSources, Verilate};
 
-/// Why there was no trial.
+/// Why a design cannot be co-simulated.
 #[derive(Debug, Error)]
-pub enum TrialError {
+pub enum CoSimulationError {
     /// The design cannot be planned.
     #[error(transparent)]
     Plan(#[from] PlanError),
@@ -35,7 +35,7 @@ pub enum TrialError {
     Simulation(#[from] SimulationError),
 }
 
-impl From<DutError> for TrialError {
+impl From<DutError> for CoSimulationError {
     fn from(error: DutError) -> Self {
         Self::Simulation(error.into())
     }
@@ -44,24 +44,24 @@ impl From<DutError> for TrialError {
 /// The plan of a design.
 ///
 /// # Errors
-/// [`TrialError::Plan`] if it has none.
-pub fn planned(design: &Design) -> Result<Plan, TrialError> {
+/// [`CoSimulationError::Plan`] if it has none.
+pub fn planned(design: &Design) -> Result<Plan, CoSimulationError> {
     Ok(Plan::new(design)?)
 }
 
 /// The Verilog and ROM files of a plan.
 ///
 /// # Errors
-/// [`TrialError::Emit`] if the emitter fails.
-pub fn rtl_sources(plan: &Plan) -> Result<RtlSources, TrialError> {
+/// [`CoSimulationError::Emit`] if the emitter fails.
+pub fn rtl_sources(plan: &Plan) -> Result<RtlSources, CoSimulationError> {
     Ok(RtlSources::new(&plan.design.name, &emit(plan)?))
 }
 
 /// The plan's RTL, compiled.
 ///
 /// # Errors
-/// [`TrialError::Emit`] and [`TrialError::Build`].
-pub fn build(plan: &Plan) -> Result<Built, TrialError> {
+/// [`CoSimulationError::Emit`] and [`CoSimulationError::Build`].
+pub fn build(plan: &Plan) -> Result<Built, CoSimulationError> {
     Ok(Verilate::default().build(&rtl_sources(plan)?)?)
 }
 
@@ -79,8 +79,8 @@ pub fn pacing(plan: &Plan) -> Pacing {
 /// Sends packets through a core, both streams free-running; back to back means as [`pacing`] has it.
 ///
 /// # Errors
-/// [`TrialError::Simulation`].
-pub fn send(core: &mut Dut, plan: &Plan, packets: &[Vec<u32>], pacing: Pacing) -> Result<Outcome, TrialError> {
+/// [`CoSimulationError::Simulation`].
+pub fn send(core: &mut Dut, plan: &Plan, packets: &[Vec<u32>], pacing: Pacing) -> Result<Outcome, CoSimulationError> {
     let pacing = if pacing == Pacing::BackToBack { self::pacing(plan) } else { pacing };
     let traffic = Traffic::new(packets, timeout(plan)).with_pacing(pacing);
     let sent = exchange(core, &traffic, |_| ());
@@ -124,7 +124,7 @@ impl Timing {
 
 /// A plan and frames for it.
 #[derive(Clone, Debug)]
-pub struct Trial<'a> {
+pub struct CoSimulation<'a> {
     /// The plan.
     pub plan: &'a Plan,
     /// Input packets.
@@ -135,7 +135,7 @@ pub struct Trial<'a> {
     pub seed: u32,
 }
 
-impl<'a> Trial<'a> {
+impl<'a> CoSimulation<'a> {
     /// Of packets in this order.
     pub fn new(plan: &'a Plan, packets: Vec<Vec<u32>>, seed: u32) -> Self {
         Self { plan, expected: model_answers(plan, &packets), packets, seed }
@@ -144,8 +144,8 @@ impl<'a> Trial<'a> {
     /// Builds and simulates.
     ///
     /// # Errors
-    /// [`TrialError`]; what is wrong with the answers is part of the verdict.
-    pub fn run(&self) -> Result<Verdict, TrialError> {
+    /// [`CoSimulationError`]; what is wrong with the answers is part of the verdict.
+    pub fn run(&self) -> Result<Verdict, CoSimulationError> {
         let built = build(self.plan)?;
         Ok(self.simulate(&built, None, &|| ())?)
     }
@@ -188,7 +188,7 @@ impl<'a> Trial<'a> {
     }
 }
 
-/// What a trial showed.
+/// What a co-simulation showed.
 #[derive(Clone, Debug)]
 pub struct Verdict {
     /// Answers, differences and cycles.
