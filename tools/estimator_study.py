@@ -201,7 +201,7 @@ def butterfly(a, b, c, d):
 
 
 class Network:
-    """One layer of rectifiers, mean over the mirror images; inputs by parity class and whitened, as `calibrate` has it."""
+    """One layer of rectifiers, mean over the mirror images; inputs by parity component and whitened, as `calibrate` has it."""
 
     def __init__(self, inputs, windows, shape, units, random):
         size, places, bases = windows * shape[0] * shape[1], inputs.shape[1], []
@@ -229,8 +229,8 @@ class Network:
 
     def forward(self, inputs):
         hidden, output = self.weights
-        classes = [x @ w for x, w in zip(np.split(inputs, self.cuts, 1), np.split(hidden, self.cuts, 0))]
-        images = butterfly(*classes)
+        components = [x @ w for x, w in zip(np.split(inputs, self.cuts, 1), np.split(hidden, self.cuts, 0))]
+        images = butterfly(*components)
         _, odd_x, odd_y, _ = butterfly(*(np.maximum(image, 0) for image in images))
         return images, (odd_x, odd_y), np.stack([odd_x @ output[:, 0], odd_y @ output[:, 1]], 1) / 4
 

@@ -83,7 +83,7 @@ impl Kind {
     /// For people, in a line.
     pub fn title(self) -> &'static str {
         match self {
-            Self::Sliding => "round, sliding, as ever",
+            Self::Sliding => "round, sliding",
             Self::TiltedAlong => "pressure tilted along the push, 0.6",
             Self::TiltedAcross => "pressure tilted across the push, 0.5",
             Self::Held => "held, half of the largest force (Mindlin)",

@@ -49,7 +49,7 @@ pub use error::PlanError;
 pub(crate) use error::{FEWEST_FORCE_STEPS, MOST_ROUNDING};
 use layout::OperandLayout;
 use matrix::QuantisedMatrix;
-use product::{Block, Product};
+use product::Product;
 use schedule::Schedule;
 use smoothing::SmoothingPlan;
 use standard_error::StandardErrorPlan;
@@ -202,13 +202,6 @@ impl Plan {
     /// Whether the core computes the field.
     pub fn has_field(&self) -> bool {
         self.design.algorithm.outputs == Outputs::Field
-    }
-
-    /// Index of the first product of `block`, and of the first after it.
-    pub fn products_of(&self, block: Block) -> (usize, usize) {
-        let first = self.products.iter().position(|product| product.block == block).unwrap_or(0);
-        let count = self.products.iter().filter(|product| product.block == block).count();
-        (first, first + count)
     }
 }
 
