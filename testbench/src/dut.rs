@@ -75,7 +75,7 @@ pub struct PortOutputs {
 /// 32-bit words of the widest beat.
 pub const MOST_WORDS: usize = 4;
 
-/// Anything with the two streams of a core: the simulated RTL, or a stand-in in a test of the driver.
+/// Anything with the two streams of a core: the simulated RTL, or a stub in a test of the driver.
 pub trait Core {
     /// 32-bit words of a beat, of either stream.
     fn words(&self) -> usize {

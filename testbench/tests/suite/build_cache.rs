@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::standin::{PLAIN_TRACE, answer, load, packet_sum};
+use crate::stub::{PLAIN_TRACE, answer, load, packet_sum};
 use testbench::dut::DutError;
 use testbench::stream::{Traffic, exchange};
 use testbench::verilate::{BuildError, RtlSources, Trace, Verilate, default_cache, translation};

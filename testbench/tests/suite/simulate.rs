@@ -1,8 +1,8 @@
-//! All modes and the timing of the stand-in in one go, and a wrong core is found out.
+//! All modes and the timing of the stub in one go, and a wrong core is found out.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::standin::{DELAY, PLAIN_TRACE, answer, packet_sum, packets};
+use crate::stub::{DELAY, PLAIN_TRACE, answer, packet_sum, packets};
 use testbench::simulate::{Job, SimulationError, frames_to_simulate, simulate};
 use testbench::stream::Pacing;
 use testbench::verilate::{Built, Verilate};

@@ -1,6 +1,6 @@
 //! Cores that break the rules are caught, and the message says where.
 
-use crate::standin::{load, packets};
+use crate::stub::{load, packets};
 use testbench::stream::{Pattern, StreamError, Traffic, Violation, exchange};
 
 const TIMEOUT: u64 = 300;

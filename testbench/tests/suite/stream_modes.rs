@@ -1,6 +1,6 @@
-//! The stream driver on the stand-in: answers in every mode, stamps, resets.
+//! The stream driver on the stub: answers in every mode, stamps, resets.
 
-use crate::standin::{DELAY, answer, load, packets};
+use crate::stub::{DELAY, answer, load, packets};
 use proptest::prelude::*;
 use testbench::stream::{Mode, Pacing, Pattern, Reset, Traffic, exchange};
 

@@ -1,4 +1,4 @@
-//! The systems for boards, in the stand-in.
+//! The systems for boards, in the stub.
 
 use std::fs;
 use std::path::Path;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 # Board parts, IP catalogue and block designs.
 
-namespace eval standin {
+namespace eval stub {
     # What is installed: more than one version each, and not in order.
     variable boards {
         xilinx.com:zcu102:part0:3.10 xczu9eg-ffvb1156-2-e xilinx.com:zcu102:part0:3.4 xczu9eg-ffvb1156-2-e
@@ -147,7 +147,7 @@ namespace eval standin {
                 # As packaged.
                 lappend pins s_axis slave axis m_axis master axis
                 foreach {interface side type} {s_axi_ctrl slave aximm interrupt out interrupt} {
-                    if {[info exists ::standin::interfaces($interface)]} {
+                    if {[info exists ::stub::interfaces($interface)]} {
                         lappend pins $interface $side $type
                     }
                 }
@@ -192,130 +192,130 @@ namespace eval standin {
     }
 }
 
-standin::command get_board_parts {} 1 1 {
+stub::command get_board_parts {} 1 1 {
     set found {}
-    foreach board [standin::installed [dict keys $::standin::boards]] {
+    foreach board [stub::installed [dict keys $::stub::boards]] {
         if {[string match [lindex $words 0] $board]} {
             lappend found $board
-            set ::standin::properties($board,PART_NAME) [dict get $::standin::boards $board]
+            set ::stub::properties($board,PART_NAME) [dict get $::stub::boards $board]
         }
     }
     return $found
 }
-standin::command get_ipdefs {-all -filter=} 0 1 {
+stub::command get_ipdefs {-all -filter=} 0 1 {
     if {![regexp {^VLNV =~ (\S+)$} $option(-filter) -> pattern]} {
         error "get_ipdefs: filter $option(-filter)"
     }
-    return [lsearch -all -inline -glob [standin::installed $::standin::catalogue] $pattern]
+    return [lsearch -all -inline -glob [stub::installed $::stub::catalogue] $pattern]
 }
-standin::command update_ip_catalog {-rebuild -scan_changes} 0 0 {
+stub::command update_ip_catalog {-rebuild -scan_changes} 0 0 {
     foreach folder [get_property ip_repo_paths [current_project]] {
-        lappend ::standin::catalogue [string trim [standin::text [file join $folder component.xml]]]
+        lappend ::stub::catalogue [string trim [stub::text [file join $folder component.xml]]]
     }
 }
 
-standin::command create_bd_design {} 1 1 {
-    set ::standin::diagram [lindex $words 0]
+stub::command create_bd_design {} 1 1 {
+    set ::stub::diagram [lindex $words 0]
     get_property board_part [current_project]
 }
-standin::command create_bd_cell {-type= -vlnv=} 1 1 {
-    standin::choice "type" $option(-type) {ip module hier}
-    standin::choice "IP" $option(-vlnv) $::standin::catalogue
+stub::command create_bd_cell {-type= -vlnv=} 1 1 {
+    stub::choice "type" $option(-type) {ip module hier}
+    stub::choice "IP" $option(-vlnv) $::stub::catalogue
     foreach {vendor library name version} [split $option(-vlnv) :] {}
     set cell [lindex $words 0]
-    if {[info exists ::standin::cells($cell)]} {
+    if {[info exists ::stub::cells($cell)]} {
         error "there is a cell $cell already"
     }
-    set ::standin::cells($cell) [expr {$vendor eq "xilinx.com" ? $name : "core"}]
+    set ::stub::cells($cell) [expr {$vendor eq "xilinx.com" ? $name : "core"}]
     return cell:$cell
 }
-standin::command apply_bd_automation {-rule= -config=} 1 1 {
-    set kind $::standin::cells([string range [lindex $words 0] 5 end])
-    standin::choice "rule" $option(-rule) xilinx.com:bd_rule:$kind
+stub::command apply_bd_automation {-rule= -config=} 1 1 {
+    set kind $::stub::cells([string range [lindex $words 0] 5 end])
+    stub::choice "rule" $option(-rule) xilinx.com:bd_rule:$kind
     array set legal {zynq_ultra_ps_e apply_board_preset processing_system7 {make_external apply_board_preset Master Slave}}
     foreach {name value} $option(-config) {
-        standin::choice "setting" $name $legal($kind)
+        stub::choice "setting" $name $legal($kind)
     }
 }
-standin::command get_bd_pins {} 1 1 {
-    standin::choice "kind of pin" [lindex [standin::pin [lindex $words 0]] 1] {clock reset interrupt}
+stub::command get_bd_pins {} 1 1 {
+    stub::choice "kind of pin" [lindex [stub::pin [lindex $words 0]] 1] {clock reset interrupt}
     return [lindex $words 0]
 }
-standin::command get_bd_intf_pins {} 1 1 {
-    standin::choice "kind of interface" [lindex [standin::pin [lindex $words 0]] 1] {aximm axis}
+stub::command get_bd_intf_pins {} 1 1 {
+    stub::choice "kind of interface" [lindex [stub::pin [lindex $words 0]] 1] {aximm axis}
     return [lindex $words 0]
 }
-standin::command connect_bd_net {-net=} 2 inf {
+stub::command connect_bd_net {-net=} 2 inf {
     set net $option(-net)
     foreach path $words {
-        foreach {side kind} [standin::pin $path] {}
-        standin::attach $path $net
+        foreach {side kind} [stub::pin $path] {}
+        stub::attach $path $net
         if {$side eq "out"} {
-            if {[info exists ::standin::drivers($net)]} {
+            if {[info exists ::stub::drivers($net)]} {
                 error "net $net has two drivers"
             }
-            set ::standin::drivers($net) $kind
+            set ::stub::drivers($net) $kind
         }
     }
     foreach path $words {
-        if {![info exists ::standin::drivers($net)]} {
+        if {![info exists ::stub::drivers($net)]} {
             error "net $net has no driver"
         }
-        standin::choice "driver of $path" $::standin::drivers($net) [lindex [standin::pin $path] 1]
+        stub::choice "driver of $path" $::stub::drivers($net) [lindex [stub::pin $path] 1]
     }
 }
-standin::command connect_bd_intf_net {} 2 2 {
+stub::command connect_bd_intf_net {} 2 2 {
     foreach {from to} $words {}
-    foreach {from_side from_kind} [standin::pin $from] {}
-    foreach {to_side to_kind} [standin::pin $to] {}
+    foreach {from_side from_kind} [stub::pin $from] {}
+    foreach {to_side to_kind} [stub::pin $to] {}
     if {"$from_side $to_side" ni {"master slave" "slave master"} || $from_kind ne $to_kind} {
         error "$from ($from_side $from_kind) does not fit $to ($to_side $to_kind)"
     }
-    standin::attach $from $from-$to
-    standin::attach $to $from-$to
+    stub::attach $from $from-$to
+    stub::attach $to $from-$to
 }
 # With an offset a segment of registers goes where it is said, without words the rest goes where there is room.
-standin::command assign_bd_address {-target_address_space= -offset= -range=} 0 1 {
+stub::command assign_bd_address {-target_address_space= -offset= -range=} 0 1 {
     if {[llength $words] == 0} {
-        standin::done assign_bd_address
+        stub::done assign_bd_address
         return
     }
-    standin::choice "address space" $option(-target_address_space) space:ps/Data
+    stub::choice "address space" $option(-target_address_space) space:ps/Data
     if {![regexp {^0x[0-9A-F]{8}$} $option(-offset)] || $option(-offset) % 0x1000 != 0} {
         error "offset $option(-offset) is none of a page"
     }
-    standin::choice "range" $option(-range) {4K 64K}
+    stub::choice "range" $option(-range) {4K 64K}
     set segment [lindex $words 0]
-    foreach {other offset} [array get ::standin::placed] {
+    foreach {other offset} [array get ::stub::placed] {
         if {$offset == $option(-offset)} {
             error "$segment and $other would both be at $offset"
         }
     }
-    set ::standin::placed($segment) $option(-offset)
-    set ::standin::properties($segment,OFFSET) $option(-offset)
-    set ::standin::properties($segment,RANGE) $option(-range)
+    set ::stub::placed($segment) $option(-offset)
+    set ::stub::properties($segment,OFFSET) $option(-offset)
+    set ::stub::properties($segment,RANGE) $option(-range)
 }
-standin::command validate_bd_design {} 0 0 {
-    standin::need assign_bd_address
-    foreach cell [lsort [array names ::standin::cells]] {
-        foreach {name side kind} [standin::pins $cell] {
-            if {$side in {in master slave} && ![info exists ::standin::nets($cell/$name)]} {
+stub::command validate_bd_design {} 0 0 {
+    stub::need assign_bd_address
+    foreach cell [lsort [array names ::stub::cells]] {
+        foreach {name side kind} [stub::pins $cell] {
+            if {$side in {in master slave} && ![info exists ::stub::nets($cell/$name)]} {
                 error "$cell/$name is not connected"
             }
             # Propagated from the processor, which divides 33.333 MHz times whole numbers.
             if {$kind eq "clock"} {
-                set ::standin::properties($cell/$name,CONFIG.FREQ_HZ) 124998749
+                set ::stub::properties($cell/$name,CONFIG.FREQ_HZ) 124998749
             }
         }
     }
-    standin::done validate_bd_design
+    stub::done validate_bd_design
 }
-standin::command save_bd_design {} 0 0 {
-    standin::need validate_bd_design
-    standin::done save_bd_design
+stub::command save_bd_design {} 0 0 {
+    stub::need validate_bd_design
+    stub::done save_bd_design
 }
-standin::command get_files {} 1 1 {
-    foreach path $::standin::constraints {
+stub::command get_files {} 1 1 {
+    foreach path $::stub::constraints {
         if {[file tail $path] eq [lindex $words 0]} {
             return [list xdc:$path]
         }
@@ -323,30 +323,30 @@ standin::command get_files {} 1 1 {
     if {[file extension [lindex $words 0]] eq ".xdc"} {
         error "the project has no file [lindex $words 0]"
     }
-    standin::need save_bd_design
-    standin::choice "file" [lindex $words 0] $::standin::diagram.bd
+    stub::need save_bd_design
+    stub::choice "file" [lindex $words 0] $::stub::diagram.bd
     return [lindex $words 0]
 }
-standin::command make_wrapper {-files= -top} 0 0 {
-    standin::need save_bd_design
-    set path [file join [pwd] ${::standin::diagram}_wrapper.v]
-    standin::write $path "\nmodule ${::standin::diagram}_wrapper (\n);\nendmodule\n"
+stub::command make_wrapper {-files= -top} 0 0 {
+    stub::need save_bd_design
+    set path [file join [pwd] ${::stub::diagram}_wrapper.v]
+    stub::write $path "\nmodule ${::stub::diagram}_wrapper (\n);\nendmodule\n"
     return $path
 }
-standin::command get_bd_addr_spaces {} 1 1 {
-    standin::choice "address space" [lindex $words 0] {ps/Data dma/Data_MM2S dma/Data_S2MM}
+stub::command get_bd_addr_spaces {} 1 1 {
+    stub::choice "address space" [lindex $words 0] {ps/Data dma/Data_MM2S dma/Data_S2MM}
     return space:[lindex $words 0]
 }
 # Of a slave's registers, or of what an address space sees.
-standin::command get_bd_addr_segs {-of_objects=} 0 1 {
+stub::command get_bd_addr_segs {-of_objects=} 0 1 {
     if {[llength $words] == 1} {
         if {![regexp {^(.*)/\*$} [lindex $words 0] -> interface]} {
             error "use a pattern INTERFACE/*, not [lindex $words 0]"
         }
-        standin::choice "kind of slave" [standin::pin $interface] {{slave aximm}}
+        stub::choice "kind of slave" [stub::pin $interface] {{slave aximm}}
         return /ps/Data/SEG_[string map {/ _} $interface]
     }
-    standin::need assign_bd_address
-    standin::choice "address space" $option(-of_objects) space:ps/Data
-    return [lsort [array names ::standin::placed]]
+    stub::need assign_bd_address
+    stub::choice "address space" $option(-of_objects) space:ps/Data
+    return [lsort [array names ::stub::placed]]
 }

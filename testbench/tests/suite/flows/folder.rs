@@ -62,7 +62,7 @@ impl Folder {
         fs::read_to_string(self.design().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
-    /// Runs a script in the stand-in.
+    /// Runs a script in the stub.
     pub fn vivado(&self, script: &str, arguments: &[&str], environment: &[(&str, &str)]) -> Ran {
         let record = self.work().join("record");
         let output = Command::new("tclsh")

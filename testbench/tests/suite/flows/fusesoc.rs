@@ -145,7 +145,7 @@ fn binary_passes(command: &mut Command) {
     assert!(ran.stdout.contains("PASS: "), "{}", ran.stdout);
 }
 
-/// The project script that `FuseSoC` writes is Vivado Tcl again, and the stand-in runs it.
+/// The project script that `FuseSoC` writes is Vivado Tcl again, and the stub runs it.
 #[test]
 fn the_vivado_project_reads_every_file() {
     let folder = Folder::small();
@@ -155,8 +155,8 @@ fn the_vivado_project_reads_every_file() {
     let script: PathBuf = work.join(format!("user.org_tactile_{NAME}_1.0.tcl"));
     let record = folder.work().join("record");
     let mut command = Command::new("tclsh");
-    let standin = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/suite/flows/vivado.tcl");
-    run(command.arg(standin).arg(&record).arg(script).current_dir(&work)).succeeded();
+    let stub = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/suite/flows/vivado.tcl");
+    run(command.arg(stub).arg(&record).arg(script).current_dir(&work)).succeeded();
     let calls = fs::read_to_string(record).expect("recorded");
     assert!(calls.contains("-value {-mode out_of_context} -objects run:synth_1"), "{calls}");
     for path in files(None).into_keys().filter(|path| path.starts_with("rtl/") || path.starts_with("rom/")) {

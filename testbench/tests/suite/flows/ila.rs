@@ -1,4 +1,4 @@
-//! The logic analyser that `generate --debug` prepares, in the stand-in.
+//! The logic analyser that `generate --debug` prepares, in the stub.
 
 use std::fs;
 

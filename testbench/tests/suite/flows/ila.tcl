@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 # Logic analysers in a linked design (UG835, UG908).
 
-namespace eval standin {
+namespace eval stub {
     # Whether the system is linked: its nets exist only then.
     variable linked 0
     # Where the core is in the system; STANDIN_CORES, a second one.
@@ -49,59 +49,59 @@ namespace eval standin {
     }
 }
 
-standin::command get_nets {-hierarchical -filter= -segments -top_net_of_hierarchical_group} 0 1 {
-    if {!$::standin::linked} {
+stub::command get_nets {-hierarchical -filter= -segments -top_net_of_hierarchical_group} 0 1 {
+    if {!$::stub::linked} {
         error "get_nets: no design is open"
     }
     if {[info exists option(-filter)]} {
         if {![info exists option(-hierarchical)] || $option(-filter) ne "MARK_DEBUG == 1"} {
             error "get_nets: filter $option(-filter)"
         }
-        return [standin::marked]
+        return [stub::marked]
     }
     foreach net [lindex $words 0] {
         if {[info exists option(-top_net_of_hierarchical_group)]} {
-            standin::choice "net" $net {system_i/core/inst/aclk system_i/core/inst/core/aclk}
+            stub::choice "net" $net {system_i/core/inst/aclk system_i/core/inst/core/aclk}
             return system_i/clock
         }
-        standin::choice "net" $net [standin::marked]
+        stub::choice "net" $net [stub::marked]
     }
     return [lindex $words 0]
 }
-standin::command create_debug_core {} 2 2 {
+stub::command create_debug_core {} 2 2 {
     foreach {name type} $words {}
-    standin::choice "debug core" $type ila
-    set ::standin::debug_ports($name/clk) {}
-    set ::standin::debug_ports($name/probe0) {}
+    stub::choice "debug core" $type ila
+    set ::stub::debug_ports($name/clk) {}
+    set ::stub::debug_ports($name/probe0) {}
     return debug_core:$name
 }
-standin::command get_debug_cores {} 1 1 {
-    if {![info exists ::standin::debug_ports([lindex $words 0]/clk)]} {
+stub::command get_debug_cores {} 1 1 {
+    if {![info exists ::stub::debug_ports([lindex $words 0]/clk)]} {
         error "no debug core [lindex $words 0]"
     }
     return debug_core:[lindex $words 0]
 }
-standin::command create_debug_port {} 2 2 {
+stub::command create_debug_port {} 2 2 {
     foreach {core type} $words {}
-    standin::choice "debug port" $type probe
-    set ::standin::debug_ports($core/probe[llength [array names ::standin::debug_ports $core/probe*]]) {}
+    stub::choice "debug port" $type probe
+    set ::stub::debug_ports($core/probe[llength [array names ::stub::debug_ports $core/probe*]]) {}
 }
-standin::command get_debug_ports {} 1 1 {
-    if {![info exists ::standin::debug_ports([lindex $words 0])]} {
+stub::command get_debug_ports {} 1 1 {
+    if {![info exists ::stub::debug_ports([lindex $words 0])]} {
         error "no debug port [lindex $words 0]"
     }
     return debug_port:[lindex $words 0]
 }
-standin::command connect_debug_port {} 2 2 {
+stub::command connect_debug_port {} 2 2 {
     foreach {port nets} $words {}
     set width [get_property port_width [get_debug_ports $port]]
     if {[llength $nets] != $width} {
         error "$port has $width channels for [llength $nets] nets"
     }
     set depth [get_property C_DATA_DEPTH debug_core:[file dirname $port]]
-    standin::choice "depth" $depth {1024 2048 4096 8192 16384 32768 65536 131072}
+    stub::choice "depth" $depth {1024 2048 4096 8192 16384 32768 65536 131072}
     if {[string match */clk $port] != ($nets eq "system_i/clock")} {
         error "$port is connected to $nets"
     }
-    set ::standin::debug_ports($port) $nets
+    set ::stub::debug_ports($port) $nets
 }

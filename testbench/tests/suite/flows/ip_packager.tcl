@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 # The IP packager.
 
-namespace eval standin {
+namespace eval stub {
     # Interfaces of the core being packaged: name to vlnv; clock and reset of each; where its files went.
     variable interfaces
     variable associated
@@ -40,7 +40,7 @@ namespace eval standin {
     }
 }
 
-standin::command ipx::package_project {
+stub::command ipx::package_project {
     -root_dir= -vendor= -library= -taxonomy= -import_files -force -set_current=
 } 0 0 {
     foreach flag {-root_dir -vendor -library -taxonomy -import_files} {
@@ -48,39 +48,39 @@ standin::command ipx::package_project {
             error "ipx::package_project: $flag is missing"
         }
     }
-    set top $::standin::properties(fileset:sources_1,top)
-    set source [standin::source_of $top $::standin::sources]
-    set ::standin::core_ports [standin::ports $source]
-    set ::standin::core_root $option(-root_dir)
-    set ::standin::core_id [list $option(-vendor) $option(-library)]
-    array unset ::standin::interfaces
-    array unset ::standin::associated
-    array unset ::standin::registers
-    set ::standin::page ROM_DIR
+    set top $::stub::properties(fileset:sources_1,top)
+    set source [stub::source_of $top $::stub::sources]
+    set ::stub::core_ports [stub::ports $source]
+    set ::stub::core_root $option(-root_dir)
+    set ::stub::core_id [list $option(-vendor) $option(-library)]
+    array unset ::stub::interfaces
+    array unset ::stub::associated
+    array unset ::stub::registers
+    set ::stub::page ROM_DIR
     file mkdir [file join $option(-root_dir) src]
     # A constraint that goes into systems would define their clock anew.
-    foreach path $::standin::constraints {
-        if {![info exists ::standin::properties(xdc:$path,USED_IN)]
-            || "out_of_context" ni $::standin::properties(xdc:$path,USED_IN)} {
+    foreach path $::stub::constraints {
+        if {![info exists ::stub::properties(xdc:$path,USED_IN)]
+            || "out_of_context" ni $::stub::properties(xdc:$path,USED_IN)} {
             error "[file tail $path] is not for synthesis out of context only"
         }
     }
-    foreach path [concat $::standin::sources $::standin::memories $::standin::constraints] {
+    foreach path [concat $::stub::sources $::stub::memories $::stub::constraints] {
         file copy -force $path [file join $option(-root_dir) src]
     }
     if {![info exists ::env(STANDIN_BLIND)]} {
-        standin::infer_all $::standin::core_ports
+        stub::infer_all $::stub::core_ports
     }
-    standin::done ipx::package_project
+    stub::done ipx::package_project
 }
-standin::command ipx::current_core {} 0 0 {
-    standin::need ipx::package_project
+stub::command ipx::current_core {} 0 0 {
+    stub::need ipx::package_project
     return core:current
 }
-standin::command ipx::get_bus_interfaces {-of_objects=} 0 1 {
-    standin::choice "core" $option(-of_objects) core:current
+stub::command ipx::get_bus_interfaces {-of_objects=} 0 1 {
+    stub::choice "core" $option(-of_objects) core:current
     set found {}
-    foreach name [standin::interface_names] {
+    foreach name [stub::interface_names] {
         if {[llength $words] == 0 || $name eq [lindex $words 0]} {
             lappend found interface:$name
         }
@@ -88,43 +88,43 @@ standin::command ipx::get_bus_interfaces {-of_objects=} 0 1 {
     return $found
 }
 # Each AXI slave has one, of its own name.
-standin::command ipx::get_memory_maps {-of_objects=} 1 1 {
-    standin::choice "core" $option(-of_objects) core:current
+stub::command ipx::get_memory_maps {-of_objects=} 1 1 {
+    stub::choice "core" $option(-of_objects) core:current
     set name [lindex $words 0]
-    if {[info exists ::standin::interfaces($name)] && [string match *:aximm_rtl:* $::standin::interfaces($name)]} {
+    if {[info exists ::stub::interfaces($name)] && [string match *:aximm_rtl:* $::stub::interfaces($name)]} {
         return map:$name
     }
     return {}
 }
 # A memory map that was inferred has a block, unless STANDIN_BLOCKLESS is set.
-standin::command ipx::get_address_blocks {-of_objects=} 0 1 {
-    standin::choice "memory map" $option(-of_objects) map:s_axi_ctrl
+stub::command ipx::get_address_blocks {-of_objects=} 0 1 {
+    stub::choice "memory map" $option(-of_objects) map:s_axi_ctrl
     return [expr {[info exists ::env(STANDIN_BLOCKLESS)] ? {} : "address_block:reg0"}]
 }
-standin::command ipx::add_address_block {} 2 2 {
-    standin::choice "memory map" [lindex $words 1] map:s_axi_ctrl
+stub::command ipx::add_address_block {} 2 2 {
+    stub::choice "memory map" [lindex $words 1] map:s_axi_ctrl
     return address_block:[lindex $words 0]
 }
-standin::command ipx::add_register {} 2 2 {
+stub::command ipx::add_register {} 2 2 {
     foreach {name block} $words {}
-    standin::choice "address block" $block address_block:reg0
-    if {[info exists ::standin::registers($name)]} {
+    stub::choice "address block" $block address_block:reg0
+    if {[info exists ::stub::registers($name)]} {
         error "register $name is there already"
     }
-    set ::standin::registers($name) {}
+    set ::stub::registers($name) {}
     return register:$name
 }
-standin::command ipx::add_field {} 2 2 {
+stub::command ipx::add_field {} 2 2 {
     foreach {name register} $words {}
     set register [regsub {^register:} $register ""]
-    if {$name in $::standin::registers($register)} {
+    if {$name in $::stub::registers($register)} {
         error "field $name of $register is there already"
     }
-    lappend ::standin::registers($register) $name
+    lappend ::stub::registers($register) $name
     return field:$register.$name
 }
 # Registers of 32 bits at addresses of their own, fields that do not overlap.
-proc standin::check_registers {} {
+proc stub::check_registers {} {
     variable registers
     set taken {}
     foreach register [lsort [array names registers]] {
@@ -136,7 +136,7 @@ proc standin::check_registers {} {
         set bits 0
         foreach name $registers($register) {
             set field field:$register.$name
-            standin::choice "access of $field" [get_property access $field] {read-only write-only read-write}
+            stub::choice "access of $field" [get_property access $field] {read-only write-only read-write}
             set mask [expr {((1 << [get_property bit_width $field]) - 1) << [get_property bit_offset $field]}]
             if {($mask & $bits) != 0 || $mask >= (1 << 32)} {
                 error "$field overlaps another or leaves its register"
@@ -145,93 +145,93 @@ proc standin::check_registers {} {
         }
     }
 }
-standin::command ipx::infer_bus_interface {} 3 3 {
+stub::command ipx::infer_bus_interface {} 3 3 {
     foreach {ports vlnv core} $words {}
-    standin::choice "core" $core core:current
-    standin::choice "interface type" $vlnv {
+    stub::choice "core" $core core:current
+    stub::choice "interface type" $vlnv {
         xilinx.com:interface:axis_rtl:1.0 xilinx.com:signal:clock_rtl:1.0 xilinx.com:signal:reset_rtl:1.0
     }
     foreach port $ports {
-        if {$port ni $::standin::core_ports} {
+        if {$port ni $::stub::core_ports} {
             error "the core has no port $port"
         }
     }
-    set ::standin::interfaces([regsub {_t[a-z]+$} [lindex $ports 0] ""]) $vlnv
+    set ::stub::interfaces([regsub {_t[a-z]+$} [lindex $ports 0] ""]) $vlnv
 }
-standin::command ipx::associate_bus_interfaces {-busif= -clock= -reset=} 1 1 {
-    standin::choice "core" [lindex $words 0] core:current
+stub::command ipx::associate_bus_interfaces {-busif= -clock= -reset=} 1 1 {
+    stub::choice "core" [lindex $words 0] core:current
     foreach flag [array names option] {
         if {$flag ne "-clock"} {
-            standin::has_interface $option($flag)
-            set ::standin::associated($option($flag)) $option(-clock)
+            stub::has_interface $option($flag)
+            set ::stub::associated($option($flag)) $option(-clock)
         }
     }
     # The clock itself is always inferred: the attribute on the port asks for it.
-    if {$option(-clock) ni $::standin::core_ports} {
+    if {$option(-clock) ni $::stub::core_ports} {
         error "the core has no clock $option(-clock)"
     }
 }
-standin::command ipx::get_file_groups {-of_objects=} 1 1 {
-    standin::choice "core" $option(-of_objects) core:current
-    standin::choice "file group" [lindex $words 0] {
+stub::command ipx::get_file_groups {-of_objects=} 1 1 {
+    stub::choice "core" $option(-of_objects) core:current
+    stub::choice "file group" [lindex $words 0] {
         xilinx_anylanguagesynthesis xilinx_anylanguagebehavioralsimulation xilinx_xpgui
     }
     return group:[lindex $words 0]
 }
-standin::command ipx::get_files {-of_objects=} 0 1 {
+stub::command ipx::get_files {-of_objects=} 0 1 {
     if {![string match group:* $option(-of_objects)]} {
         error "ipx::get_files: $option(-of_objects) is no file group"
     }
     set found {}
-    foreach path [lsort [glob -directory [file join $::standin::core_root src] *]] {
-        set ::standin::properties(file:$path,NAME) src/[file tail $path]
+    foreach path [lsort [glob -directory [file join $::stub::core_root src] *]] {
+        set ::stub::properties(file:$path,NAME) src/[file tail $path]
         lappend found file:$path
     }
     return $found
 }
-standin::command ipgui::get_guiparamspec {-name= -component=} 0 0 {
-    standin::choice "core" $option(-component) core:current
-    return [expr {$option(-name) eq $::standin::page ? "page:$option(-name)" : ""}]
+stub::command ipgui::get_guiparamspec {-name= -component=} 0 0 {
+    stub::choice "core" $option(-component) core:current
+    return [expr {$option(-name) eq $::stub::page ? "page:$option(-name)" : ""}]
 }
-standin::command ipgui::remove_param {-component=} 1 1 {
-    standin::choice "parameter" [lindex $words 0] page:$::standin::page
-    set ::standin::page {}
+stub::command ipgui::remove_param {-component=} 1 1 {
+    stub::choice "parameter" [lindex $words 0] page:$::stub::page
+    set ::stub::page {}
 }
-standin::command ipx::create_xgui_files {} 1 1 {
-    standin::choice "core" [lindex $words 0] core:current
-    standin::done ipx::create_xgui_files
+stub::command ipx::create_xgui_files {} 1 1 {
+    stub::choice "core" [lindex $words 0] core:current
+    stub::done ipx::create_xgui_files
 }
-standin::command ipx::update_checksums {} 1 1 {
-    standin::need ipx::create_xgui_files
-    standin::done ipx::update_checksums
+stub::command ipx::update_checksums {} 1 1 {
+    stub::need ipx::create_xgui_files
+    stub::done ipx::update_checksums
 }
-standin::command ipx::check_integrity {} 1 1 {
-    standin::need ipx::update_checksums
-    foreach name [standin::interface_names] {
-        if {[regexp {:(clock|interrupt)_rtl:} $::standin::interfaces($name)]} {
+stub::command ipx::check_integrity {} 1 1 {
+    stub::need ipx::update_checksums
+    foreach name [stub::interface_names] {
+        if {[regexp {:(clock|interrupt)_rtl:} $::stub::interfaces($name)]} {
             continue
         }
-        if {![info exists ::standin::associated($name)]} {
+        if {![info exists ::stub::associated($name)]} {
             error "interface $name has no clock"
         }
     }
     foreach name {s_axis m_axis aresetn} {
-        standin::has_interface $name
+        stub::has_interface $name
     }
-    foreach name [standin::interface_names] {
-        if {[string match *:aximm_rtl:* $::standin::interfaces($name)] && $::standin::associated($name) ne "aclk"} {
+    foreach name [stub::interface_names] {
+        if {[string match *:aximm_rtl:* $::stub::interfaces($name)] && $::stub::associated($name) ne "aclk"} {
             error "interface $name is in another clock domain"
         }
     }
-    standin::check_registers
+    stub::check_registers
     foreach name {name version core_revision display_name description} {
         get_property $name core:current
     }
-    standin::done ipx::check_integrity
+    stub::done ipx::check_integrity
 }
-standin::command ipx::save_core {} 1 1 {
-    standin::need ipx::check_integrity
-    foreach {vendor library} $::standin::core_id {}
+stub::command ipx::save_core {} 1 1 {
+    stub::need ipx::check_integrity
+    foreach {vendor library} $::stub::core_id {}
     set vlnv $vendor:$library:[get_property name core:current]:[get_property version core:current]
-    standin::write [file join $::standin::core_root component.xml] "$vlnv\n"
+    stub::write [file join $::stub::core_root component.xml] "$vlnv\n"
 }

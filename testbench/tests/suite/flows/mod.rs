@@ -1,6 +1,6 @@
 //! What a generated folder offers to other tools: Vivado scripts, file lists, `FuseSoC`, Bender, a CI workflow.
 //!
-//! Vivado itself is not here. Its scripts run in `tclsh` against a stand-in (`flows/vivado.tcl`) that knows the
+//! Vivado itself is not here. Its scripts run in `tclsh` against a stub (`flows/vivado.tcl`) that knows the
 //! commands, their flags and their files and refuses everything else; broken copies of the scripts show that it does.
 
 mod block_design;

@@ -1,4 +1,4 @@
-//! Activity from simulation to an estimate of power, in the stand-in.
+//! Activity from simulation to an estimate of power, in the stub.
 
 use std::fs;
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 # Estimates of power from a routed checkpoint (UG835, UG907).
 
-namespace eval standin {
+namespace eval stub {
     # Nets of the design that the activity file has; NA before one was read, as in Vivado's report.
     variable matched NA
 
@@ -55,23 +55,23 @@ namespace eval standin {
     }
 }
 
-standin::command open_checkpoint {-part=} 1 1 {
-    standin::files [list $words] .dcp
-    standin::done open_checkpoint
+stub::command open_checkpoint {-part=} 1 1 {
+    stub::files [list $words] .dcp
+    stub::done open_checkpoint
 }
-standin::command read_saif {-strip_path= -no_strip -out_file>} 1 1 {
-    standin::need open_checkpoint
-    standin::files [list $words] .saif
-    set nets [standin::nets_below [standin::text [lindex $words 0]] $option(-strip_path)]
-    set ::standin::matched [expr {$nets > 0 ? "56% ($nets/12380)" : "0% (0/12380)"}]
+stub::command read_saif {-strip_path= -no_strip -out_file>} 1 1 {
+    stub::need open_checkpoint
+    stub::files [list $words] .saif
+    set nets [stub::nets_below [stub::text [lindex $words 0]] $option(-strip_path)]
+    set ::stub::matched [expr {$nets > 0 ? "56% ($nets/12380)" : "0% (0/12380)"}]
 }
-standin::command report_power {-hier= -file> -return_string} 0 0 {
-    standin::need open_checkpoint
+stub::command report_power {-hier= -file> -return_string} 0 0 {
+    stub::need open_checkpoint
     if {[info exists option(-hier)]} {
-        standin::choice "hierarchy" $option(-hier) {logic power all}
+        stub::choice "hierarchy" $option(-hier) {logic power all}
     }
     if {[info exists option(-return_string)]} {
-        return [standin::power]
+        return [stub::power]
     }
 }
-standin::command report_switching_activity {-average -file>} 0 1 { standin::need open_checkpoint }
+stub::command report_switching_activity {-average -file>} 0 1 { stub::need open_checkpoint }

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 # Projects, synthesis, implementation, reports.
 
-namespace eval standin {
+namespace eval stub {
     variable sources {}
     variable memories {}
     variable constraints {}
@@ -75,9 +75,9 @@ namespace eval standin {
     }
 }
 
-standin::command create_project {-in_memory -force -part=} 0 2 {
-    if {$::standin::project ne ""} {
-        error "project $::standin::project is still open"
+stub::command create_project {-in_memory -force -part=} 0 2 {
+    if {$::stub::project ne ""} {
+        error "project $::stub::project is still open"
     }
     if {![info exists option(-in_memory)]} {
         if {[llength $words] == 0} {
@@ -85,104 +85,104 @@ standin::command create_project {-in_memory -force -part=} 0 2 {
         }
         file mkdir [lindex $words end]
     }
-    set ::standin::project [expr {[llength $words] ? [lindex $words 0] : "in_memory"}]
+    set ::stub::project [expr {[llength $words] ? [lindex $words 0] : "in_memory"}]
     if {[info exists option(-part)]} {
-        standin::part $option(-part)
+        stub::part $option(-part)
     }
-    return project:$::standin::project
+    return project:$::stub::project
 }
-standin::command close_project {-delete} 0 0 {
-    standin::forget_project
+stub::command close_project {-delete} 0 0 {
+    stub::forget_project
 }
-standin::command current_project {} 0 0 {
-    if {$::standin::project eq ""} {
+stub::command current_project {} 0 0 {
+    if {$::stub::project eq ""} {
         error "no project is open"
     }
-    return project:$::standin::project
+    return project:$::stub::project
 }
-standin::command current_fileset {} 0 0 { return fileset:sources_1 }
-standin::command get_filesets {} 1 1 { return fileset:[lindex $words 0] }
-standin::command get_runs {} 1 1 {
-    standin::choice "run" [lindex $words 0] {synth_1 impl_1}
+stub::command current_fileset {} 0 0 { return fileset:sources_1 }
+stub::command get_filesets {} 1 1 { return fileset:[lindex $words 0] }
+stub::command get_runs {} 1 1 {
+    stub::choice "run" [lindex $words 0] {synth_1 impl_1}
     return run:[lindex $words 0]
 }
-standin::command set_msg_config {-id= -new_severity=} 0 0 {
-    standin::choice "severity" $option(-new_severity) {ERROR {CRITICAL WARNING} WARNING INFO STATUS}
+stub::command set_msg_config {-id= -new_severity=} 0 0 {
+    stub::choice "severity" $option(-new_severity) {ERROR {CRITICAL WARNING} WARNING INFO STATUS}
     if {![regexp {^[A-Za-z_]+ [0-9]+-[0-9]+$} $option(-id)]} {
         error "no message $option(-id)"
     }
 }
 
 # set_property takes NAME VALUE OBJECTS, or -dict LIST OBJECTS, or all three behind flags.
-standin::command set_property {-dict= -name= -value= -objects=} 0 3 {
+stub::command set_property {-dict= -name= -value= -objects=} 0 3 {
     if {[info exists option(-dict)]} {
         foreach {name value} $option(-dict) {
-            standin::set_on $name $value [lindex $words 0]
+            stub::set_on $name $value [lindex $words 0]
         }
     } elseif {[info exists option(-name)]} {
-        standin::set_on $option(-name) $option(-value) $option(-objects)
+        stub::set_on $option(-name) $option(-value) $option(-objects)
     } elseif {[llength $words] == 3} {
-        standin::set_on {*}$words
+        stub::set_on {*}$words
     } else {
         error "set_property: expected a name, a value and objects"
     }
 }
-standin::command get_property {} 2 2 {
+stub::command get_property {} 2 2 {
     foreach {name object} $words {}
-    if {![info exists ::standin::properties($object,$name)]} {
+    if {![info exists ::stub::properties($object,$name)]} {
         error "get_property: $object has no property $name"
     }
-    return $::standin::properties($object,$name)
+    return $::stub::properties($object,$name)
 }
 
-standin::command read_verilog {-sv -library=} 1 inf {
-    lappend ::standin::sources {*}[standin::files $words {.v .sv}]
+stub::command read_verilog {-sv -library=} 1 inf {
+    lappend ::stub::sources {*}[stub::files $words {.v .sv}]
 }
-standin::command read_mem {} 1 inf {
-    lappend ::standin::memories {*}[standin::files $words .mem]
+stub::command read_mem {} 1 inf {
+    lappend ::stub::memories {*}[stub::files $words .mem]
 }
-standin::command read_xdc {-unmanaged -mode= -ref= -cells=} 1 1 {
-    lappend ::standin::constraints {*}[standin::files $words .xdc]
+stub::command read_xdc {-unmanaged -mode= -ref= -cells=} 1 1 {
+    lappend ::stub::constraints {*}[stub::files $words .xdc]
 }
-standin::command add_files {-norecurse -fileset=} 1 inf {
-    foreach path [standin::files $words {.v .mem .xdc}] {
+stub::command add_files {-norecurse -fileset=} 1 inf {
+    foreach path [stub::files $words {.v .mem .xdc}] {
         switch [file extension $path] {
-            .v { lappend ::standin::sources $path }
-            .mem { lappend ::standin::memories $path }
-            .xdc { lappend ::standin::constraints $path }
+            .v { lappend ::stub::sources $path }
+            .mem { lappend ::stub::memories $path }
+            .xdc { lappend ::stub::constraints $path }
         }
         if {[file extension $path] eq ".xdc"} {
-            standin::choice "set of constraints" $option(-fileset) constrs_1
+            stub::choice "set of constraints" $option(-fileset) constrs_1
         }
     }
 }
-standin::command update_compile_order {-fileset=} 0 0
+stub::command update_compile_order {-fileset=} 0 0
 
-standin::command get_ports {} 1 1 {
-    if {[lindex $words 0] ni $::standin::ports} {
+stub::command get_ports {} 1 1 {
+    if {[lindex $words 0] ni $::stub::ports} {
         error "no port [lindex $words 0]"
     }
     return port:[lindex $words 0]
 }
-standin::command create_clock {-name= -period=} 1 1 {
+stub::command create_clock {-name= -period=} 1 1 {
     if {![string is double -strict $option(-period)] || $option(-period) <= 0} {
         error "create_clock: period $option(-period)"
     }
-    lappend ::standin::clocks [lindex $words 0]
+    lappend ::stub::clocks [lindex $words 0]
 }
 
-standin::command synth_design {-top= -part= -mode= -flatten_hierarchy= -directive= -generic=} 0 0 {
-    standin::part $option(-part)
-    standin::choice "mode" $option(-mode) {default out_of_context}
-    standin::choice "flattening" $option(-flatten_hierarchy) {rebuilt full none}
-    set ::standin::ports [standin::ports [standin::source_of $option(-top) $::standin::sources]]
-    if {[llength $::standin::memories] == 0} {
+stub::command synth_design {-top= -part= -mode= -flatten_hierarchy= -directive= -generic=} 0 0 {
+    stub::part $option(-part)
+    stub::choice "mode" $option(-mode) {default out_of_context}
+    stub::choice "flattening" $option(-flatten_hierarchy) {rebuilt full none}
+    set ::stub::ports [stub::ports [stub::source_of $option(-top) $::stub::sources]]
+    if {[llength $::stub::memories] == 0} {
         error "\[Synth 8-4445\] could not open \$readmem data file"
     }
-    foreach path $::standin::constraints {
+    foreach path $::stub::constraints {
         uplevel #0 [list source $path]
     }
-    standin::done synth_design
+    stub::done synth_design
 }
 foreach {step before} {
     opt_design synth_design
@@ -190,22 +190,22 @@ foreach {step before} {
     phys_opt_design place_design
     route_design place_design
 } {
-    standin::command $step {-directive=} 0 0 "standin::need $before; standin::done $step"
+    stub::command $step {-directive=} 0 0 "stub::need $before; stub::done $step"
 }
-standin::command write_checkpoint {-force} 1 1 {
-    standin::need synth_design
-    standin::write [lindex $words 0]
+stub::command write_checkpoint {-force} 1 1 {
+    stub::need synth_design
+    stub::write [lindex $words 0]
 }
-standin::command report_utilization {-hierarchical -file> -return_string} 0 0 {
-    standin::need synth_design
+stub::command report_utilization {-hierarchical -file> -return_string} 0 0 {
+    stub::need synth_design
     if {[info exists option(-return_string)]} {
-        return [standin::utilization]
+        return [stub::utilization]
     }
 }
 # The netlist has what metadata.json says of each block, in an instance of its first module; STANDIN_SPLIT names a module
 # whose multipliers have become four each.
-proc standin::netlist {} {
-    set path [file join [file dirname [file dirname [lindex $::standin::sources 0]]] metadata.json]
+proc stub::netlist {} {
+    set path [file join [file dirname [file dirname [lindex $::stub::sources 0]]] metadata.json]
     set channel [open $path]
     set text [read $channel]
     close $channel
@@ -213,23 +213,23 @@ proc standin::netlist {} {
     foreach {- modules dsp bram36} [regexp -all -inline \
         {"modules": \[([^\]]*)\],\s+"dsp": (\d+),\s+"bram36": ([0-9.]+)} $text] {
         set module [lindex [regexp -inline {sptfra_[a-z_0-9]+} $modules] 0]
-        set copies [expr {[standin::setting STANDIN_SPLIT ""] eq $module ? 4 : 1}]
+        set copies [expr {[stub::setting STANDIN_SPLIT ""] eq $module ? 4 : 1}]
         lappend cells [list $module DSP48E2 [expr {$copies * $dsp}]] [list $module RAMB36E2 [expr {int($bram36)}]] \
             [list $module RAMB18E2 [expr {$bram36 != int($bram36)}]]
     }
     return $cells
 }
-standin::command get_cells {-quiet -hierarchical -filter=} 0 0 {
-    standin::need synth_design
+stub::command get_cells {-quiet -hierarchical -filter=} 0 0 {
+    stub::need synth_design
     set found {}
     if {[regexp {^ORIG_REF_NAME == (\w+) \|\| REF_NAME == (\w+)$} $option(-filter) -> module again]} {
-        foreach path $::standin::sources {
+        foreach path $::stub::sources {
             if {[file rootname [file tail $path]] eq $module && $again eq $module} {
                 lappend found "core/gen_pes\[0\].$module"
             }
         }
     } elseif {[regexp {^REF_NAME =~ (\S+)$} $option(-filter) -> kind]} {
-        foreach cell [standin::netlist] {
+        foreach cell [stub::netlist] {
             lassign $cell module primitive count
             for {set index 0} {$index < $count && [string match $kind $primitive]} {incr index} {
                 lappend found "core/gen_pes\[0\].$module/$primitive$index"
@@ -240,44 +240,44 @@ standin::command get_cells {-quiet -hierarchical -filter=} 0 0 {
     }
     return $found
 }
-standin::command report_timing_summary {-delay_type= -max_paths= -file> -return_string} 0 0 {
-    standin::need route_design
-    standin::choice "delay type" $option(-delay_type) {max min min_max}
+stub::command report_timing_summary {-delay_type= -max_paths= -file> -return_string} 0 0 {
+    stub::need route_design
+    stub::choice "delay type" $option(-delay_type) {max min min_max}
 }
-standin::command report_drc {-file>} 0 0 { standin::need route_design }
-standin::command get_timing_paths {-delay_type= -max_paths=} 0 0 {
-    standin::need route_design
-    standin::choice "delay type" $option(-delay_type) {max min min_max}
-    set ::standin::properties(path:1,SLACK) [standin::setting STANDIN_SLACK 0.345]
-    return [expr {[llength $::standin::clocks] ? "path:1" : ""}]
+stub::command report_drc {-file>} 0 0 { stub::need route_design }
+stub::command get_timing_paths {-delay_type= -max_paths=} 0 0 {
+    stub::need route_design
+    stub::choice "delay type" $option(-delay_type) {max min min_max}
+    set ::stub::properties(path:1,SLACK) [stub::setting STANDIN_SLACK 0.345]
+    return [expr {[llength $::stub::clocks] ? "path:1" : ""}]
 }
 
-standin::command launch_runs {-to_step= -jobs=} 1 1 {
-    standin::need validate_bd_design
-    standin::choice "run" [lindex $words 0] {synth_1 impl_1}
-    standin::choice "step" $option(-to_step) {write_bitstream route_design}
-    standin::done launch_runs
+stub::command launch_runs {-to_step= -jobs=} 1 1 {
+    stub::need validate_bd_design
+    stub::choice "run" [lindex $words 0] {synth_1 impl_1}
+    stub::choice "step" $option(-to_step) {write_bitstream route_design}
+    stub::done launch_runs
 }
-standin::command wait_on_run {} 1 1 {
-    standin::need launch_runs
-    set ::standin::properties(run:[lindex $words 0],PROGRESS) 100%
-    set ::standin::properties(run:[lindex $words 0],STATUS) "write_bitstream Complete!"
+stub::command wait_on_run {} 1 1 {
+    stub::need launch_runs
+    set ::stub::properties(run:[lindex $words 0],PROGRESS) 100%
+    set ::stub::properties(run:[lindex $words 0],STATUS) "write_bitstream Complete!"
     set left {}
-    if {[info exists ::standin::properties(run:impl_1,STEPS.OPT_DESIGN.TCL.PRE)]} {
-        standin::implement_with $::standin::properties(run:impl_1,STEPS.OPT_DESIGN.TCL.PRE)
+    if {[info exists ::stub::properties(run:impl_1,STEPS.OPT_DESIGN.TCL.PRE)]} {
+        stub::implement_with $::stub::properties(run:impl_1,STEPS.OPT_DESIGN.TCL.PRE)
         set left {runs/impl_1/system_wrapper.ltx runs/impl_1/debug_nets.ltx}
     }
     lappend left runs/impl_1/system_wrapper.bit gen/sources_1/bd/system/hw_handoff/system.hwh
     foreach path $left {
-        set place [file join [pwd] $::standin::project $::standin::project.$path]
+        set place [file join [pwd] $::stub::project $::stub::project.$path]
         file mkdir [file dirname $place]
-        standin::write $place "\n"
+        stub::write $place "\n"
     }
-    standin::done wait_on_run
+    stub::done wait_on_run
 }
-standin::command open_run {} 1 1 {
-    standin::need wait_on_run
-    lappend ::standin::clocks [lindex $words 0]
-    standin::done route_design
+stub::command open_run {} 1 1 {
+    stub::need wait_on_run
+    lappend ::stub::clocks [lindex $words 0]
+    stub::done route_design
 }
-standin::command write_hw_platform {-fixed -include_bit -force -file>} 0 0 { standin::need wait_on_run }
+stub::command write_hw_platform {-fixed -include_bit -force -file>} 0 0 { stub::need wait_on_run }

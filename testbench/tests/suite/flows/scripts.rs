@@ -1,4 +1,4 @@
-//! Synthesis and IP packaging, in the stand-in.
+//! Synthesis and IP packaging, in the stub.
 
 use std::collections::BTreeSet;
 use std::fs;

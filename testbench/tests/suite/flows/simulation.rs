@@ -1,4 +1,4 @@
-//! The self-checking testbench by its script for Vivado's simulator. Stand-ins of the three programs check what they
+//! The self-checking testbench by its script for Vivado's simulator. Stubs of the three programs check what they
 //! are asked for and let Icarus Verilog do it, so that the verdict is a real one.
 
 use std::env;
@@ -12,14 +12,14 @@ use super::folder::{Folder, NAME, Ran, files, run};
 
 const SCRIPT: &str = "vivado/simulate.tcl";
 
-/// Runs the script in plain Tcl with the stand-ins on the path; their calls are the record.
+/// Runs the script in plain Tcl with the stubs on the path; their calls are the record.
 fn simulate_with(folder: &Folder, environment: &[(&str, &str)]) -> Ran {
     let programs = folder.work().join("programs of the simulator");
     fs::create_dir_all(&programs).expect("can be made");
-    let standin = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/suite/flows/simulator.tcl");
+    let stub = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/suite/flows/simulator.tcl");
     for program in ["xvlog", "xelab", "xsim"] {
         let launcher = programs.join(program);
-        fs::write(&launcher, format!("#!/bin/sh\nexec tclsh '{standin}' {program} \"$@\"\n")).expect("can be written");
+        fs::write(&launcher, format!("#!/bin/sh\nexec tclsh '{stub}' {program} \"$@\"\n")).expect("can be written");
         fs::set_permissions(&launcher, fs::Permissions::from_mode(0o755)).expect("can be set");
     }
     let record = folder.work().join("record_simulator");

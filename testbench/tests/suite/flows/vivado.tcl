@@ -15,7 +15,7 @@ foreach newer {lmap try tailcall coroutine} {
     rename $newer {}
 }
 
-namespace eval standin {
+namespace eval stub {
     variable folder [file dirname [file normalize [info script]]]
     variable properties
     array set properties {}
@@ -30,7 +30,7 @@ namespace eval standin {
     proc command {name flags least most {body {}}} {
         namespace eval ::[namespace qualifiers $name] {}
         proc ::$name args "
-            set words \[standin::parse [list $name $flags $least $most] \$args option\]
+            set words \[stub::parse [list $name $flags $least $most] \$args option\]
             $body
         "
     }
@@ -65,7 +65,7 @@ namespace eval standin {
         return $words
     }
 
-    proc write {path {text "written by the stand-in\n"}} {
+    proc write {path {text "written by the stub\n"}} {
         set file [open $path w]
         puts -nonewline $file $text
         close $file
@@ -134,12 +134,12 @@ namespace eval standin {
 }
 
 foreach part {project.tcl ip_packager.tcl block_design.tcl ila.tcl power.tcl} {
-    source [file join $standin::folder $part]
+    source [file join $stub::folder $part]
 }
 
-set standin::channel [open [lindex $argv 0] w]
+set stub::channel [open [lindex $argv 0] w]
 set script [lindex $argv 1]
 set argv [lrange $argv 2 end]
 set argc [llength $argv]
 source $script
-close $standin::channel
+close $stub::channel

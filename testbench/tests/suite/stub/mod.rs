@@ -1,4 +1,4 @@
-//! The stand-in core `packet_sum` and what it must answer.
+//! The stub core `packet_sum` and what it must answer.
 
 use std::collections::BTreeMap;
 
@@ -6,12 +6,12 @@ use testbench::verilate::{RtlSources, Trace, Verilate};
 
 pub const ADDENDS: [u32; 4] = [0x100, 0x2000, 0x0003_0000, 0x4000_0000];
 
-/// Cycles from the last word in to the first word out, the stand-in's default.
+/// Cycles from the last word in to the first word out, the stub's default.
 pub const DELAY: u64 = 5;
 
 const SOURCE: &str = include_str!("packet_sum.v");
 
-/// The stand-in with the numbered fault; 0 is none.
+/// The stub with the numbered fault; 0 is none.
 pub fn packet_sum(fault: u32) -> RtlSources {
     let text = SOURCE.replace("parameter FAULT = 0", &format!("parameter FAULT = {fault}"));
     let rom: Vec<String> = ADDENDS.iter().map(|word| format!("{word:08x}\n")).collect();
@@ -22,14 +22,14 @@ pub fn packet_sum(fault: u32) -> RtlSources {
     RtlSources { top: "packet_sum".to_owned(), files }
 }
 
-/// What the stand-in answers to `packet` after `counter` others.
+/// What the stub answers to `packet` after `counter` others.
 pub fn answer(counter: u32, packet: &[u32]) -> Vec<u32> {
     let length = packet.len() as u32;
     let sum = packet.iter().fold(0u32, |sum, word| sum.wrapping_add(*word));
     vec![counter, length, sum, ADDENDS[packet.len() % 4]]
 }
 
-/// The stand-in, loaded. Built in the shared cache: after the first run nothing is compiled.
+/// The stub, loaded. Built in the shared cache: after the first run nothing is compiled.
 pub fn load(fault: u32) -> testbench::dut::Dut {
     Verilate::default().build(&packet_sum(fault)).expect("builds").load(1).expect("loads")
 }

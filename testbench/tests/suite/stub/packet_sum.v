@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// Stand-in for a generated core, small enough to check by hand: for each packet in, one of four words out:
+// Stub for a generated core, small enough to check by hand: for each packet in, one of four words out:
 // packet counter, number of words, their sum, the ROM word at the number of words (mod 4).
 // Each test breaks one thing by a parameter.
 
