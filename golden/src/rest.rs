@@ -94,6 +94,9 @@ pub struct AtRest {
     pub drift: f64,
     /// Signs that something pressed, or that the recording does not suit.
     pub warnings: Vec<String>,
+    /// Whether one of them says that something lay on the sensor or touched it.
+    #[serde(skip)]
+    pub touched: bool,
 }
 
 impl AtRest {
@@ -136,8 +139,11 @@ impl AtRest {
             noise_of_full_scale: noise_pa / full_scale,
             drift,
             warnings: Vec::new(),
+            touched: false,
         };
-        rest.warnings = rest.warnings_of(design, frames, &silent, usual);
+        rest.warnings = rest.touches(design, usual);
+        rest.touched = !rest.warnings.is_empty();
+        rest.warnings.extend(rest.others(frames, &silent, usual));
         Ok(rest)
     }
 
@@ -145,8 +151,8 @@ impl AtRest {
         !self.dead.contains(&taxel) && !self.stuck.contains(&taxel)
     }
 
-    /// What speaks against a sensor at rest.
-    fn warnings_of(&self, design: &Design, frames: &[Vec<f64>], silent: &[usize], usual: f64) -> Vec<String> {
+    /// Signs that something lay on the sensor or touched it.
+    fn touches(&self, design: &Design, usual: f64) -> Vec<String> {
         let (mut said, full_scale) = (Vec::new(), design.hardware.full_scale_pa);
         let live: Vec<&TaxelAtRest> = self.taxels.iter().filter(|each| self.works(each.taxel)).collect();
         if self.noise_pa > LOUD * full_scale {
@@ -155,13 +161,6 @@ impl AtRest {
                  the sensor, or is its unit another?",
                 self.noise_pa
             ));
-        }
-        if self.noise <= 0.0 {
-            said.push(
-                "the median taxel never changes: its noise is below the converter's steps, or clipped at its end, and which \
-                 taxels are dead is not told"
-                    .to_owned(),
-            );
         }
         if self.noisy.len() > (self.taxels.len() / 20).max(2) {
             said.push(format!(
@@ -177,6 +176,19 @@ impl AtRest {
             said.push(format!(
                 "neighbours have like offsets, up to {spread:.1} from the median: does something lie on the sensor?"
             ));
+        }
+        said
+    }
+
+    /// Signs that the recording does not suit.
+    fn others(&self, frames: &[Vec<f64>], silent: &[usize], usual: f64) -> Vec<String> {
+        let mut said = Vec::new();
+        if self.noise <= 0.0 {
+            said.push(
+                "the median taxel never changes: its noise is below the converter's steps, or clipped at its end, and which \
+                 taxels are dead is not told"
+                    .to_owned(),
+            );
         }
         // A third of the frames each, with their noise.
         let chance = usual * (6.0 / frames.len() as f64).sqrt();

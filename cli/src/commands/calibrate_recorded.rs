@@ -130,6 +130,9 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
         fitted = fit(&design, &given)?;
         found_creep = find_creep(&fitted.0)?;
     }
+    if let (Some(weight), Some(found)) = (&weight, &found_creep) {
+        found.check().map_err(|problem| format!("{}: {problem}", weight.file.display()))?;
+    }
     let (mut design, mut results) = fitted;
     if let (Some(pressed), Some(found)) = (&given[1], &results[1]) {
         pressed.refuse_missing(found)?;
@@ -156,23 +159,6 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
         contents.insert(0, (page_file.clone(), page(&design, &parts)));
     }
     write_together(&contents)?;
-    let next = match frames {
-        Some(frames) => {
-            let layout = layout.options();
-            format!(
-                "sptfra solve {} --frames {}{layout} --out {}",
-                out.display(),
-                frames.display(),
-                out.with_extension("forces.csv").display()
-            )
-        }
-        None if constant_load.is_some() => {
-            format!("sptfra solve {} --frames FRAMES.csv --out FORCES.csv", out.display())
-        }
-        None => {
-            format!("sptfra calibrate {} --frames FRAMES.csv --forces FORCES.csv --out CHECKED.toml", out.display())
-        }
-    };
     let [uniform, forces] = &results;
     let report = Report {
         design: &design.name,
@@ -180,9 +166,30 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
         uniform: uniform.as_ref(),
         forces: forces.as_ref(),
         creep: found_creep,
-        next,
+        next: next(out, recordings),
     };
     Ok(json_or(&report, json, text)?.into())
+}
+
+/// The command to run next.
+fn next(out: &Path, recordings: &Recordings) -> String {
+    match &recordings.frames {
+        Some(frames) => {
+            let layout = recordings.layout.options();
+            format!(
+                "sptfra solve {} --frames {}{layout} --out {}",
+                out.display(),
+                frames.display(),
+                out.with_extension("forces.csv").display()
+            )
+        }
+        None if recordings.constant_load.is_some() => {
+            format!("sptfra solve {} --frames FRAMES.csv --out FORCES.csv", out.display())
+        }
+        None => {
+            format!("sptfra calibrate {} --frames FRAMES.csv --forces FORCES.csv --out CHECKED.toml", out.display())
+        }
+    }
 }
 
 /// Frames of contacts or of uniform pressure, and what was measured with them.
@@ -309,7 +316,7 @@ fn text(report: &Report<'_>) -> String {
             }
         }
     }
-    if let Some(creep::Fitted { creep, held_s, rise, residual_share }) = &report.creep {
+    if let Some(creep::Fitted { creep, held_s, rise, residual_share, .. }) = &report.creep {
         say!(text, "from constant load: the readings rise by {:.1} % in {held_s:.1} s", 100.0 * rise);
         say!(
             text,

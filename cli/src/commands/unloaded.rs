@@ -11,7 +11,7 @@ use golden::rest::AtRest;
 use serde::Serialize;
 
 use super::recording::Recording;
-use crate::message::{self, say};
+use crate::message::{self, Message, say};
 
 /// Frames without load, and those of typical contacts.
 #[derive(Clone, Copy)]
@@ -49,6 +49,15 @@ pub fn run(
     let named = |error| format!("{}: {error}", design.name);
     let rest = AtRest::of(design, frames).map_err(named)?;
     let noise_of_contacts = loaded.map(|loaded| share(design, &rest, loaded)).transpose()?;
+    let mut faults = Vec::new();
+    if let Some(out) = out.filter(|_| rest.touched) {
+        faults.push(format!(
+            "{}: not written; take everything off the sensor and record it anew. If it does read this without load, --json has \
+             the offset of each taxel, of which to make lines gain,offset",
+            out.display()
+        ));
+    }
+    let out = out.filter(|_| !rest.touched);
     if let Some(out) = out {
         let files = Design::files_named_in(path)?;
         let inputs: Vec<&Path> = files.iter().map(AsRef::as_ref).chain([path, recording.file]).collect();
@@ -70,7 +79,7 @@ pub fn run(
         expected_error: design.expected_error_at(noise_of_contacts.map_or(design.input.noise, shown)),
     };
     if json {
-        return Ok((serde_json::to_string_pretty(&report)? + "\n").into());
+        return Ok(Message { text: serde_json::to_string_pretty(&report)? + "\n", faults });
     }
     let mut text = String::new();
     let counts = if design.input.counts() { "counts" } else { "Pa" };
@@ -119,7 +128,7 @@ pub fn run(
             name.display().to_string()
         );
     }
-    Ok(text.into())
+    Ok(Message { text, faults })
 }
 
 /// The noise as a share of what typical contacts read.

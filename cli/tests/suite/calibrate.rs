@@ -134,7 +134,7 @@ fn frames_that_may_be_missing_are_told_of() {
     });
     let names = |with_times: bool| if with_times { "time (s)," } else { "" };
     let time = |with_times: bool, frame: usize| if with_times { format!("{frame},") } else { String::new() };
-    let calibrate = |lost: std::ops::Range<usize>, with_times: bool| {
+    let calibrate = |lost: std::ops::Range<usize>, with_times: bool, lines: usize| {
         let taxels: Vec<String> = (0..78).map(|taxel| format!("p{taxel}")).collect();
         let mut text_of = names(with_times).to_owned() + &taxels.join(",") + "\n";
         for (number, frame) in recording.frames.iter().enumerate().filter(|(number, _)| !lost.contains(number)) {
@@ -145,18 +145,25 @@ fn frames_that_may_be_missing_are_told_of() {
         let force = |(number, force): (usize, &[Option<f64>; 3])| {
             format!("{}{}\n", time(with_times, number), force[2].unwrap())
         };
-        let lines: String = recording.measured.forces.iter().enumerate().map(force).collect();
+        let lines: String = recording.measured.forces.iter().take(lines).enumerate().map(force).collect();
         fs::write(&forces, format!("{}F_z (N)\n{lines}", names(with_times))).unwrap();
         let paths = ["--frames", text(&frames), "--forces", text(&forces), "--out", text(&out)];
         sptfra(&[&["calibrate", text(&pad)], &paths[..]].concat())
     };
-    let refused = calibrate(120..123, false);
-    let said = String::from_utf8(refused.stderr).unwrap();
-    for part in ["press.csv: F_z errs by", "frames may be missing: give a column of times in both files"] {
-        assert!(!refused.status.success() && said.contains(part), "{said}");
+    let errors = ["press.csv: F_z errs by", "frames may be missing: give a column of times in both files"];
+    let lag = [
+        "or frames are missing: line 1 to frame 1 fits the loads nearly as well as",
+        "give both files a column of times",
+    ];
+    let all = recording.frames.len();
+    for (lost, lines, parts) in [(120..123, all, lag), (120..123, all - 3, errors)] {
+        let refused = calibrate(lost.clone(), false, lines);
+        let said = String::from_utf8(refused.stderr).unwrap();
+        assert!(!refused.status.success() && parts.iter().all(|part| said.contains(part)), "{lost:?}: {said}");
     }
     assert!(!out.exists());
-    let output = calibrate(120..123, true);
+    assert!(calibrate(0..0, false, all).status.success(), "none are missing");
+    let output = calibrate(120..123, true, all);
     let said = String::from_utf8(output.stdout.clone()).unwrap();
     assert!(output.status.success() && said.contains("paired by their times"), "{output:?}");
 }

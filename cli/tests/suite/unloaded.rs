@@ -155,3 +155,28 @@ fn the_calibration_takes_the_offsets_off() {
     let found = AtRest::of(&design, &many).unwrap();
     assert_eq!(found.calibration(&design, &many).unwrap_err(), RestError::Dead(9, 8));
 }
+
+/// A tare with what lies on the sensor in it would make that thing unseen.
+#[test]
+fn no_calibration_is_written_of_a_sensor_with_load() {
+    let folder = tempfile::tempdir().unwrap();
+    let [design, rest, out] =
+        ["mat.toml", "rest.csv", "tare.csv"].map(|name| folder.path().join(name).to_str().unwrap().to_owned());
+    fs::write(&design, text("")).unwrap();
+    let lying = |taxel: usize| {
+        let [x, y] = [(taxel % 6) as f64 - 2.5, (taxel / 6) as f64 - 6.0];
+        1000.0 * (-(x * x + y * y) / 4.0).exp()
+    };
+    write_frames(rest.as_ref(), &frames(100, |frame, taxel| lying(taxel) + 2.0 * noise(frame, taxel))).unwrap();
+    let asked = ["check", &design, "--frames", &rest, "--unloaded", "--out", &out, "--json"];
+    for arguments in [&asked[..7], &asked] {
+        let said = sptfra(arguments);
+        let [lines, errors] = [said.stdout, said.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        assert!(!said.status.success() && !fs::exists(&out).unwrap(), "{lines}");
+        assert!(lines.contains("noise_floor_pa") && !lines.contains("tare.csv"), "{lines}");
+        for part in ["warning: neighbours have like offsets", "tare.csv: not written; take everything off"] {
+            assert!(errors.contains(part), "no {part:?} in: {errors}");
+        }
+    }
+    assert!(sptfra(&asked[..5]).status.success(), "nothing was to be written");
+}

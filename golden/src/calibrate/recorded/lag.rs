@@ -1,9 +1,13 @@
 //! The lag between two logs that do not begin together, by cross-correlation of the readings' sum with the load.
 
+use std::ops::Range;
+
 use crate::numbers::correlation;
 
 /// A lag is used only if it explains this share of the variance.
 const EXPLAINS: f64 = 0.7;
+/// Lags that leave half of the variance are none that could be meant.
+const HALF: f64 = 0.5;
 /// A share of the variance that rounding alone leaves.
 const ROUNDING: f64 = 1e-6;
 /// Fewer frames tell no lag.
@@ -17,14 +21,16 @@ const WORK: usize = 20_000_000;
 pub(super) struct Lags {
     /// From the farthest lag before to the farthest behind.
     left: Vec<f64>,
-    /// A lag that leaves more is another one than the best.
+    /// A lag that leaves more is worse than the best.
     alike: f64,
+    /// One that leaves more is clearly worse.
+    near: f64,
 }
 
 impl Lags {
-    /// Of readings and loads; a lag is as good as the best if it leaves at most `apart` times its variance. Nothing where no
-    /// lag explains the readings.
-    pub(super) fn of(readings: &[f64], loads: &[Option<f64>], apart: f64) -> Option<Self> {
+    /// Of readings and loads. `apart` says how many times the best one's variance a worse lag leaves, and a clearly worse one.
+    /// Nothing where no lag explains the readings.
+    pub(super) fn of(readings: &[f64], loads: &[Option<f64>], apart: [f64; 2]) -> Option<Self> {
         let count = readings.len().min(loads.len());
         if count < FRAMES {
             return None;
@@ -32,7 +38,8 @@ impl Lags {
         let farthest = (count / SHARE).min(WORK / count) as isize;
         let left: Vec<f64> = (-farthest..=farthest).map(|lag| unexplained(readings, loads, lag)).collect();
         let best = left.iter().copied().fold(f64::INFINITY, f64::min);
-        (best <= 1.0 - EXPLAINS).then(|| Self { left, alike: apart * best.max(ROUNDING) })
+        let alike = apart[0] * best.max(ROUNDING);
+        (best <= 1.0 - EXPLAINS).then(|| Self { left, alike, near: (apart[1] * best).min(HALF).max(alike) })
     }
 
     fn zero(&self) -> usize {
@@ -45,25 +52,37 @@ impl Lags {
         place.and_then(|place| self.left.get(place)).is_some_and(|left| *left <= self.alike)
     }
 
+    /// The lags around one that are not clearly worse than the best: those of the same edges.
+    fn around(&self, place: usize) -> Range<usize> {
+        let is_worse = |place: &usize| self.left[*place] > self.near;
+        let first = (0..=place).rfind(is_worse).map_or(0, |before| before + 1);
+        first..(place..self.left.len()).find(is_worse).unwrap_or(self.left.len())
+    }
+
+    /// The best lag of some.
+    fn best_of(&self, places: Range<usize>) -> Option<isize> {
+        let best = places.min_by(|&a, &b| self.left[a].total_cmp(&self.left[b]))?;
+        Some(best as isize - self.zero() as isize)
+    }
+
+    /// The best lag around 0, if one there is not clearly worse than the best of all.
+    pub(super) fn best_around_zero(&self) -> Option<isize> {
+        self.best_of(self.around(self.zero()))
+    }
+
     /// By how many frames the loads come late, 0 where that is as good as any.
     ///
     /// # Errors
     ///
-    /// Two lags that are as good as each other, and better than none.
+    /// The best lag and another of which it is not clearly better, unless the best is around 0.
     pub(super) fn best(&self) -> Result<isize, [isize; 2]> {
-        let (left, zero) = (&self.left, self.zero());
-        let best = (0..left.len()).fold(zero, |best, lag| if left[lag] < left[best] { lag } else { best });
-        let alike = |lag: usize| left[lag] <= self.alike;
-        if alike(zero) {
-            return Ok(0);
-        }
-        // The lags around the best are those of the same edges.
-        let first = (0..best).rfind(|&lag| !alike(lag)).unwrap_or(0);
-        let last = (best..left.len()).find(|&lag| !alike(lag)).unwrap_or(left.len());
-        let lag = |place: usize| place as isize - zero as isize;
-        match (0..first).chain(last..left.len()).find(|&place| alike(place)) {
-            Some(other) => Err([lag(best), lag(other)]),
-            None => Ok(lag(best)),
+        let zero = self.zero();
+        let best = self.best_of(0..self.left.len()).filter(|_| !self.allow(0)).unwrap_or(0);
+        let around = self.around(zero.saturating_add_signed(best));
+        let mut others = std::iter::once(zero).chain(0..around.start).chain(around.end..self.left.len());
+        match others.find(|&place| self.left[place] <= self.near) {
+            Some(other) if !around.contains(&other) => Err([best, other as isize - zero as isize]),
+            _ => Ok(best),
         }
     }
 }
@@ -87,7 +106,7 @@ mod tests {
         for factor in [0.1, 0.3, 0.7, 1.0, 3.3, 10.0, 17.9] {
             let loads: Vec<_> = (0..100).map(|n| Some(-load(n))).collect();
             let readings: Vec<_> = (0..100).map(|n| 5.0 + factor * load(n)).collect();
-            assert_eq!(Lags::of(&readings, &loads, 4.0).unwrap().best(), Ok(0), "{factor}");
+            assert_eq!(Lags::of(&readings, &loads, [4.0; 2]).unwrap().best(), Ok(0), "{factor}");
         }
     }
 }

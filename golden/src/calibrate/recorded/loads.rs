@@ -1,7 +1,7 @@
 //! What pressed in each frame, what the taxels read without load, and where the converter ends.
 
 use super::lag::Lags;
-use super::table::Measured;
+use super::table::{Measured, Pairing};
 use crate::design::Design;
 use crate::numbers::{counted, magnitude, middle, sorted};
 
@@ -9,12 +9,12 @@ use crate::numbers::{counted, magnitude, middle, sorted};
 pub(super) const REST: f64 = 0.01;
 /// Lines of the forces may be so much more or fewer than the frames.
 const LENGTHS: f64 = 0.1;
-/// A lag is as good as the best if it leaves at most so many times its variance.
-const APART: f64 = 2.0;
+/// A lag is worse than the best if it leaves so many times its variance, and clearly worse with the second.
+const APART: [f64; 2] = [2.0, 16.0];
 /// Parts of a recording that are looked at for missing frames.
 const PARTS: usize = 8;
 /// The same as [`APART`] in a part, where creep and curves let a wrong lag look better.
-const APART_IN_PART: f64 = 4.0;
+const APART_IN_PART: [f64; 2] = [4.0; 2];
 /// A part tells something if its loads range over this share of the range of all.
 const TELLS: f64 = 0.5;
 /// Parts on either side of missing frames that agree, at least,
@@ -43,20 +43,30 @@ pub(super) fn pair<'a>(design: &Design, frames: &'a [Vec<f64>], measured: &Measu
     let readings: Vec<f64> = frames.iter().map(sum).collect();
     // Pressures of a bladder rise in steps, which any lag fits.
     let loads: Vec<Option<f64>> = measured.forces.iter().map(|force| force[2]).collect();
-    let lag = Lags::of(&readings, &loads, APART).map_or(Ok(0), |lags| lags.best()).map_err(|[one, other]| {
-        (
-            format!(
-                "frames and loads do not begin together: {} fits the loads as well as {}",
-                together(one),
-                together(other)
-            ),
-            "give both files a column of times, or cut them so that both begin with the same touch".to_owned(),
-        )
-    })?;
+    let (clock, remedy) = match measured.pairing {
+        Pairing::Lines => {
+            (false, "give both files a column of times, or cut them so that both begin with the same touch")
+        }
+        _ => (true, "give both files the same clock"),
+    };
+    let unclear = |why: String| {
+        (format!("frames and loads do not begin together, or frames are missing: {why}"), remedy.to_owned())
+    };
+    // One clock says what belongs together, whatever fits better.
+    let lags = (measured.pairing != Pairing::Clock).then(|| Lags::of(&readings, &loads, APART)).flatten();
+    // Nor do files of one length begin far apart.
+    let around_zero = lags.as_ref().filter(|_| clock || apart == 0).and_then(Lags::best_around_zero);
+    let lag = match (lags.map_or(Ok(0), |lags| lags.best()), around_zero) {
+        (Ok(lag), _) | (Err(_), Some(lag)) => lag,
+        (Err([one, other]), None) => {
+            return Err(unclear(format!("{} fits the loads nearly as well as {}", together(other), together(one))));
+        }
+    };
     let skip = |frames: isize| usize::try_from(frames).unwrap_or(0);
     let (frames, from) = (&frames[skip(-lag)..], skip(lag));
     let both = frames.len().min(lines - from);
-    if let Some((place, count)) = missing(&readings[skip(-lag)..][..both], &loads[from..][..both]) {
+    let parts = Parts::of(&readings[skip(-lag)..][..both], &loads[from..][..both]);
+    if let Some((place, count)) = parts.missing().filter(|_| !clock) {
         let what = match count {
             1 => "1 frame is".to_owned(),
             -1 => "1 line of forces is".to_owned(),
@@ -68,11 +78,16 @@ pub(super) fn pair<'a>(design: &Design, frames: &'a [Vec<f64>], measured: &Measu
             "give both files a column of times, or cut them there".to_owned(),
         ));
     }
+    if lag != 0 && parts.most_differ() {
+        return Err(unclear(format!("{} fits best, but not most parts of the recording", together(lag))));
+    }
     let mut remarks = Vec::new();
     if lag != 0 {
         remarks.push(format!(
-            "frames and loads do not begin together: they are paired by what fits best, {}",
-            together(lag)
+            "frames and loads do not begin together: they are paired by what fits best, {}; {} and {} have no counterpart",
+            together(lag),
+            counted(count - both, "frame"),
+            counted(lines - both, "line")
         ));
     } else if apart > 0 {
         remarks.push(format!(
@@ -87,39 +102,58 @@ pub(super) fn pair<'a>(design: &Design, frames: &'a [Vec<f64>], measured: &Measu
     Ok((&frames[..both], measured, remarks))
 }
 
-/// About where frames are missing, and how many; of lines of forces the negative number. What is missing shifts all parts
-/// that follow.
-fn missing(readings: &[f64], loads: &[Option<f64>]) -> Option<(usize, isize)> {
-    let range = |loads: &[Option<f64>]| {
-        let sorted = sorted(loads.iter().flatten().copied());
-        sorted.last().zip(sorted.first()).map_or(0.0, |(most, least)| most - least)
-    };
-    let (length, least) = (readings.len() / PARTS, TELLS * range(loads));
-    let part = |begin: usize| {
-        let loads = &loads[begin..][..length];
-        let lags = (range(loads) >= least).then(|| Lags::of(&readings[begin..][..length], loads, APART_IN_PART));
-        Some((begin, lags??))
-    };
-    let parts: Vec<(usize, Lags)> = (0..PARTS).filter_map(|number| part(number * length)).collect();
-    let begins = |lag: isize, other: isize| -> Vec<usize> {
-        parts.iter().filter(|(_, lags)| lags.allow(lag) && !lags.allow(other)).map(|(begin, _)| *begin).collect()
-    };
-    let is_end = |begin: usize| {
-        let loads: Vec<f64> = loads[begin..][..length].iter().flatten().copied().collect();
-        let [least, most] = [f64::min, f64::max].map(|pick| loads.iter().copied().reduce(pick).unwrap_or(0.0));
-        let is_above = |load: f64| load > f64::midpoint(least, most);
-        let crossings = loads.windows(2).filter(|pair| is_above(pair[0]) != is_above(pair[1])).count();
-        (begin == 0 || begin == (PARTS - 1) * length) && crossings >= CROSSINGS
-    };
-    let agree = |begins: &[usize]| begins.len() >= AGREE || begins.iter().any(|&begin| is_end(begin));
-    let lags: Vec<isize> = parts.iter().filter_map(|(_, lags)| lags.best().ok()).collect();
-    let mut pairs = lags.iter().flat_map(|&before| lags.iter().map(move |&after| (before, after)));
-    pairs.find_map(|(before, after)| {
-        let [earlier, later] = [begins(before, after), begins(after, before)];
-        let enough = agree(&earlier) && agree(&later) && earlier.len().max(later.len()) >= AGREE;
-        let (end, begin) = (earlier.last()? + length, *later.first()?);
-        (enough && end <= begin).then_some((usize::midpoint(end, begin), after - before))
-    })
+/// Parts of a recording that tell something.
+struct Parts<'a> {
+    loads: &'a [Option<f64>],
+    length: usize,
+    /// Where each begins, and its lags.
+    all: Vec<(usize, Lags)>,
+}
+
+impl<'a> Parts<'a> {
+    fn of(readings: &[f64], loads: &'a [Option<f64>]) -> Self {
+        let range = |loads: &[Option<f64>]| {
+            let sorted = sorted(loads.iter().flatten().copied());
+            sorted.last().zip(sorted.first()).map_or(0.0, |(most, least)| most - least)
+        };
+        let (length, least) = (readings.len() / PARTS, TELLS * range(loads));
+        let part = |begin: usize| {
+            let loads = &loads[begin..][..length];
+            let lags = (range(loads) >= least).then(|| Lags::of(&readings[begin..][..length], loads, APART_IN_PART));
+            Some((begin, lags??))
+        };
+        Self { loads, length, all: (0..PARTS).filter_map(|number| part(number * length)).collect() }
+    }
+
+    /// Whether most fit another lag than 0.
+    fn most_differ(&self) -> bool {
+        2 * self.all.iter().filter(|(_, lags)| !lags.allow(0)).count() > self.all.len()
+    }
+
+    /// About where frames are missing, and how many; of lines of forces the negative number. What is missing shifts all parts
+    /// that follow.
+    fn missing(&self) -> Option<(usize, isize)> {
+        let Self { loads, length, all } = self;
+        let begins = |lag: isize, other: isize| -> Vec<usize> {
+            all.iter().filter(|(_, lags)| lags.allow(lag) && !lags.allow(other)).map(|(begin, _)| *begin).collect()
+        };
+        let is_end = |begin: usize| {
+            let loads: Vec<f64> = loads[begin..][..*length].iter().flatten().copied().collect();
+            let [least, most] = [f64::min, f64::max].map(|pick| loads.iter().copied().reduce(pick).unwrap_or(0.0));
+            let is_above = |load: f64| load > f64::midpoint(least, most);
+            let crossings = loads.windows(2).filter(|pair| is_above(pair[0]) != is_above(pair[1])).count();
+            (begin == 0 || begin == (PARTS - 1) * length) && crossings >= CROSSINGS
+        };
+        let agree = |begins: &[usize]| begins.len() >= AGREE || begins.iter().any(|&begin| is_end(begin));
+        let lags: Vec<isize> = all.iter().filter_map(|(_, lags)| lags.best().ok()).collect();
+        let mut pairs = lags.iter().flat_map(|&before| lags.iter().map(move |&after| (before, after)));
+        pairs.find_map(|(before, after)| {
+            let [earlier, later] = [begins(before, after), begins(after, before)];
+            let enough = agree(&earlier) && agree(&later) && earlier.len().max(later.len()) >= AGREE;
+            let (end, begin) = (earlier.last()? + length, *later.first()?);
+            (enough && end <= begin).then_some((usize::midpoint(end, begin), after - before))
+        })
+    }
 }
 
 /// Which frame and line belong together.
@@ -210,14 +244,22 @@ fn of_all(rest: &[f64], alive: &[usize]) -> Vec<f64> {
 mod tests {
     use super::*;
 
+    fn measured(loads: &[f64]) -> Measured {
+        Measured::of_forces(loads.iter().map(|&load| [None, None, Some(-load)]).collect())
+    }
+
     /// What pairing says of frames that read `reading` of a load each, if these were measured.
     fn paired(readings: &[f64], loads: &[f64]) -> Result<Vec<String>, Wrong> {
+        pair_all(readings, &measured(loads))
+    }
+
+    /// The same of what was measured.
+    fn pair_all(readings: &[f64], measured: &Measured) -> Result<Vec<String>, Wrong> {
         let text = "format = 3\nname = \"pad\"\n[algorithm]\nestimator = \"line\"\n[sensor]\ncolumns = 2\nrows = 2\n\
                     pitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\npa_per_count = -2.0\n";
         let design = Design::from_toml(text, "pad.toml").unwrap();
         let frames: Vec<Vec<f64>> = readings.iter().map(|&reading| vec![reading; 4]).collect();
-        let measured = Measured::of_forces(loads.iter().map(|&load| [None, None, Some(-load)]).collect());
-        pair(&design, &frames, &measured).map(|(_, _, remarks)| remarks)
+        pair(&design, &frames, measured).map(|(_, _, remarks)| remarks)
     }
 
     /// Between -1 and 1.
@@ -268,6 +310,50 @@ mod tests {
                 let said: f64 = problem.split(' ').nth(2).unwrap().trim_end_matches(',').parse().unwrap();
                 let expected = (at - if of_frames { begin } else { 0 }) as f64;
                 assert!((said - expected).abs() < 1600.0 / 8.0, "{lost} {begin}: {problem}, not {expected}");
+            }
+        }
+    }
+
+    /// Touches that are alike, with a strength of their own, `period` frames apart.
+    fn periodic(count: usize, period: usize) -> Vec<f64> {
+        let load = |n: usize| {
+            let [touch, at] = [n / period, n % period];
+            let turn = (at as f64 / (0.4 * period as f64) - 0.625) * std::f64::consts::PI;
+            if turn > 0.0 && turn < std::f64::consts::PI { (1.25 + 0.25 * random(touch)) * turn.sin() } else { 0.0 }
+        };
+        (0..count).map(load).collect()
+    }
+
+    /// Of periodic touches a whole period off fits well, and most of all where frames are missing.
+    #[test]
+    fn periodic_touches_are_paired_by_a_clock_or_refused() {
+        let loads = periodic(1600, 200);
+        let noise = |n: usize| 0.02 * random(n + 5000);
+        let mut lossy: Vec<f64> = (0..1600).map(|n| 5.0 * loads[n] + noise(n)).collect();
+        assert_eq!(paired(&lossy, &loads).unwrap(), [""; 0]);
+        lossy.drain(320..350);
+        let (problem, remedy) = paired(&lossy, &loads).unwrap_err();
+        assert!(problem.contains("nearly as well as") && remedy.contains("column of times"), "{problem}");
+        // Creep delays the readings: what fits best is not what one clock says.
+        let mut creep = 0.0;
+        let creeping: Vec<f64> = (0..800)
+            .map(|n| {
+                let load = periodic(800, 160)[n];
+                let reading = load + creep;
+                creep += (0.4 * load - creep) / 60.0;
+                5.0 * reading + noise(n)
+            })
+            .collect();
+        let loads = periodic(800, 160);
+        let times: Vec<f64> = (0..800).map(|n| 0.01 * f64::from(n)).collect();
+        for (begin, late) in [(1e9, 0), (0.0, 25)] {
+            let clock = |n: usize| begin + times[n];
+            let measured = Measured { times: Some((0..800 - late).map(clock).collect()), ..measured(&loads[late..]) };
+            let frames: Vec<f64> = (0..800).map(clock).collect();
+            let found = pair_all(&creeping, &measured.at(&frames).unwrap());
+            match late {
+                0 => assert_eq!(found.unwrap(), [""; 0]),
+                _ => assert!(found.unwrap_err().1.contains("the same clock")),
             }
         }
     }

@@ -14,6 +14,20 @@ use crate::units::timestamp;
 
 /// Frames and forces must have this share of the frames' time in common.
 const COMMON: f64 = 0.5;
+/// Clocks that begin within so many seconds from 0 may be those of each log alone.
+const BEGINS: f64 = 0.1;
+
+/// How measured lines belong to frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Pairing {
+    /// One for one, in turn.
+    #[default]
+    Lines,
+    /// By the times of one clock.
+    Clock,
+    /// By times that may count from the beginning of each log.
+    Clocks,
+}
 
 /// What was measured, frame by frame: forces and pressures have an entry for each, known or not.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,6 +40,8 @@ pub struct Measured {
     pub contacts: Option<Vec<String>>,
     /// The time of each line in seconds, where a column has it.
     pub times: Option<Vec<f64>>,
+    /// How its lines belong to the frames.
+    pub pairing: Pairing,
     /// What was taken for what.
     pub remarks: Vec<String>,
 }
@@ -49,6 +65,7 @@ impl Measured {
             pressures: frames.kept(self.pressures),
             contacts: self.contacts.map(|names| frames.kept(names)),
             times: self.times.map(|times| frames.kept(times)),
+            pairing: self.pairing,
             remarks: self.remarks,
         }
     }
@@ -107,6 +124,7 @@ impl Measured {
             pressures: value(&|line| self.pressures[line]),
             contacts: self.contacts.as_ref().map(contact),
             times: Some(frames.to_vec()),
+            pairing: if frames[0].abs().max(begin.abs()) < BEGINS { Pairing::Clocks } else { Pairing::Clock },
             remarks,
         })
     }
