@@ -148,7 +148,7 @@ fn text(report: &SolveReport<'_>) -> String {
     let mut text = String::new();
     say!(text, "{}: forces of {} in {}", report.design, counted(report.frames, "frame"), report.forces_file.display());
     for count in &report.status_counts {
-        say!(text, "  {:>6} frames: {}", count.frames, count.meaning);
+        say!(text, "  {:>13}: {}", counted(count.frames, "frame"), count.meaning);
     }
     if let Some(errors) = &report.errors {
         let mut table = Table::new(["errors in %", "max", "std. error"]);

@@ -202,8 +202,11 @@ fn read(path: &Path, table: &Table<'_>, example: &str, guess: &Guess) -> Result<
                 [] => format!("{} without a header", counted(columns, "column")),
                 _ => format!("the columns {}", table.names.join(", ")),
             };
-            let (asked, points) =
-                if may_be_decimals { (". Are these decimal commas?", "decimal points, or ") } else { ("", "") };
+            let (asked, points) = if may_be_decimals {
+                (", unless the commas are decimal ones", "decimal points, or ")
+            } else {
+                ("", "")
+            };
             wrong(
                 format!("{seen}: nobody can tell what they are{asked}"),
                 format!("write {points}a header such as {example}"),

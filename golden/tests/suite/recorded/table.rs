@@ -63,8 +63,11 @@ fn what_nobody_can_tell_is_refused() {
     for (text, parts) in [
         ("", ["forces.csv", "no line of numbers", "one line for each frame"]),
         ("1,2\n0,5\n", ["2 columns without a header", "nobody can tell", "F_x,F_y,F_z"]),
-        ("550,5\n551,0\n760,25\n", ["2 columns without", "decimal commas?", "write decimal points, or a header"]),
-        ("-5,5\n", ["2 columns without", "decimal commas?", "write decimal points, or a header"]),
+        (
+            "550,5\n551,0\n760,25\n",
+            ["2 columns without", "commas are decimal ones", "write decimal points, or a header"],
+        ),
+        ("-5,5\n", ["2 columns without", "commas are decimal ones", "write decimal points, or a header"]),
         ("5|2\n6|3\n", ["line 1", "\"|\" separates the values", "commas"]),
         // A remark between the lines names nothing.
         ("1,2,3,4,5\n# a,b,F_z,d,e\n6,7,8,9,1\n", ["5 columns without", "nobody can tell", "header"]),
