@@ -173,8 +173,7 @@ BENCH_CELLS   := sensor1-reduced sensor1-resultants sensor1-fast sensor1-fast-64
 bench: tools ## Measure solver, generator, simulation, cycles and cells, into results/ (Yosys: half an hour)
 	@echo 'bench: a release build'
 	@$(CARGO) build --quiet --release -p sptfra -p xtask --bins
-	@echo 'bench: Yosys, five designs'
-	@PROFILE=release tools/bench.sh $(BENCH_CELLS:%=designs/%.toml)
+	@PROFILE=release tools/synth.sh $(BENCH_CELLS:%=designs/%.toml)
 	@mkdir -p $(BENCH_FOLDER)
 	@echo 'bench: the f64 solver (a minute)'
 	@$(XTASK_RELEASE) solver --json $(BENCH_SOLVER) > $(BENCH_FOLDER)/solver.json
@@ -186,12 +185,11 @@ bench: tools ## Measure solver, generator, simulation, cycles and cells, into re
 	@python3 tools/results.py bench $(BENCH_FOLDER)/figures.json
 	@python3 tools/plots.py
 
-LUTS_DESIGN := xtask/designs/sensor1-keys.toml
-
 .PHONY: luts
-luts: tools build ## Fit the estimates of LUT and FF to the cells that `make bench` counted, and to other modules (minutes)
-	@tools/luts.sh $(LUTS_DESIGN)
-	@$(XTASK) luts $(LUTS_DESIGN) $(TARGET)/luts/stat.json
+luts: tools build ## Fit the estimates of LUT and FF to the cells that Yosys counts in forty designs (hours; goes on where it stopped)
+	@$(CARGO) build --quiet -p xtask
+	@designs=$$($(BIN)/xtask luts --designs $(TARGET)/luts) && tools/synth.sh $$designs
+	@$(BIN)/xtask luts $(TARGET)/synth
 
 # One point a job; sweeps on more than one machine: `make sweep-cluster SNAKEMAKE_OPTIONS='--executor slurm --jobs 100'`.
 SWEEP_FOLDER  := $(TARGET)/sweep

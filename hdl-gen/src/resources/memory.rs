@@ -42,6 +42,16 @@ impl Memory {
     pub fn all_bram36(&self) -> f64 {
         self.count as f64 * self.bram36
     }
+
+    /// LUTs of all of them, if they are no block memory: of 64 bits of a ROM, or 8 for 14 bits of 32 words.
+    pub fn luts(&self) -> f64 {
+        if self.bram36 > 0.0 {
+            return 0.0;
+        }
+        let (depth, width, count) = (self.depth, f64::from(self.width), self.count as f64);
+        let of_bit = if self.read_only { depth as f64 / 64.0 } else { depth.div_ceil(LUT_DEPTH) as f64 * 8.0 / 14.0 };
+        count * width * of_bit
+    }
 }
 
 /// A memory with its predicted RAMB36, in no block yet.

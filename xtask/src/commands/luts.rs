@@ -1,38 +1,45 @@
 //! `cargo xtask luts`: the fit of LUTs and flip-flops.
 
-use std::collections::BTreeMap;
+use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use golden::output::write_whole;
-use sptfra::arguments::design_file;
-use sptfra::message;
-use xtask::luts::{count, fit, read};
+use sptfra::message::{self, Message};
+use xtask::luts::{COUNTS, FITTED, counted, files, fit, missing};
 
-/// Fits LUTs and flip-flops to Yosys' counts: writes results/luts.csv, prints the constants of hdl-gen/src/plan/luts.rs.
+/// Fits LUTs and flip-flops to Yosys' counts: writes results/luts.csv, and hdl-gen/src/plan/luts.csv, which is compiled in.
 ///
-/// Whole designs are those of results/cells.csv. Run it at the top of the checkout, or `make luts`.
+/// `make luts` does it all. Run it at the top of the checkout. A design that results/luts.csv has is not counted again.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Design file (TOML) with what the whole designs do not have.
-    #[arg(value_parser = design_file())]
-    design: PathBuf,
-    /// Yosys' statistics of it (JSON); without them its counts are those of results/luts.csv.
-    statistics: Option<PathBuf>,
+    /// Folder with Yosys' statistics of designs in xtask/designs/counted.toml, NAME.stat.json.
+    folder: PathBuf,
+    /// Write the files of designs that have no counts there instead, and print their places.
+    #[arg(long)]
+    designs: bool,
 }
 
 /// Fits.
-pub fn run(Args { design, statistics }: &Args) -> message::Result {
-    let table = Path::new("results/luts.csv");
-    let name = design.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let counts = |path: &Path| read(&fs::read_to_string(path).unwrap_or_default()).unwrap_or_default();
-    let parts = match statistics {
-        Some(statistics) => BTreeMap::from([(name, count(design, statistics)?)]),
-        None => counts(table),
-    };
-    let folder = design.parent().unwrap_or(Path::new(""));
-    let fit = fit((&counts(Path::new("results/cells.csv")), Path::new("designs")), (&parts, folder))?;
-    write_whole(table, fit.table.as_bytes())?;
-    let [lut, ff] = fit.fitted;
-    Ok(format!("ERROR_PERCENT: {:?}\nFITTED: [\n{lut:?},\n{ff:?},\n]\n", fit.error_percent).into())
+pub fn run(Args { folder, designs }: &Args) -> message::Result {
+    let root = Path::new("");
+    let missing = missing(root)?;
+    if *designs {
+        fs::create_dir_all(folder)?;
+        let mut places = String::new();
+        for design in &missing {
+            for (name, content) in files(design) {
+                write_whole(&folder.join(name), content.as_bytes())?;
+            }
+            let place = folder.join(format!("{}.toml", design.name));
+            writeln!(places, "{}", place.display())?;
+        }
+        return Ok(places.into());
+    }
+    let fit = fit(&counted(root, Some(folder))?);
+    write_whole(Path::new(COUNTS), fit.counts.as_bytes())?;
+    write_whole(Path::new(FITTED), fit.fitted.as_bytes())?;
+    let left: Vec<String> =
+        self::missing(root)?.into_iter().map(|design| format!("no counts of {}", design.name)).collect();
+    Ok(Message { text: fit.fitted, faults: left })
 }
