@@ -88,7 +88,7 @@ pub struct AtRest {
     pub noise_pa: f64,
     /// For `algorithm.noise_floor_pa`: three deviations.
     pub noise_floor_pa: f64,
-    /// For `algorithm.regularisation.noise`: the deviation over `hardware.full_scale_pa`.
+    /// The deviation over `hardware.full_scale_pa`: the noise of contacts that reach it.
     pub noise_of_full_scale: f64,
     /// Median of the taxels' drift, in the units of the file.
     pub drift: f64,

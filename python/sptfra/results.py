@@ -59,7 +59,7 @@ class Rest:
     noise_pa: float
     #: For `algorithm.noise_floor_pa`: three deviations.
     noise_floor_pa: float
-    #: For `algorithm.regularisation.noise`.
+    #: The deviation over `full_scale_pa`: the noise of contacts that reach it.
     noise_of_full_scale: float
     #: Signs that something pressed.
     warnings: tuple[str, ...]

@@ -224,7 +224,7 @@ fn lines(new: &Args, design: &Design, path: &Path) -> Vec<String> {
     }
     if design.algorithm.regularisation.factor() > 0.0 {
         lines.push(
-            "Deeper than 1.5 pitches: `regularisation` keeps noise down; its `noise` is to be your sensor's."
+            "Deeper than 1.5 pitches: `regularisation` is that of the design's `noise`, which is to be your sensor's."
                 .to_owned(),
         );
     }

@@ -112,13 +112,6 @@ pub fn run(
         say!(text, "{expected}{of}");
     }
     say!(text, "[algorithm] noise_floor_pa = {:.1}  # three standard deviations", ceil(rest.noise_floor_pa));
-    if rest.noise_of_full_scale > 0.0 && design.algorithm.regularisation.factor() > 0.0 {
-        say!(
-            text,
-            "[algorithm] regularisation = {{ noise = {} }}  # relative to contacts whose largest stress is full_scale_pa",
-            shown(rest.noise_of_full_scale)
-        );
-    }
     if let Some(out) = out {
         let same = folder(out) == folder(path);
         let name = out.file_name().filter(|_| same).map_or_else(|| out.into(), Into::<std::path::PathBuf>::into);

@@ -73,8 +73,8 @@ pub(super) struct SensorKeys {
     pub creep: Option<Creep>,
     /// The k of an exponential moving average of each taxel over the frames, with the weight 2^-k. A step of any taxel by more
     /// than 6 standard deviations, `noise` times the frame's largest stress, restarts it. A frame that is short, not finite or
-    /// dropped leaves it as it was. With `scaling = "per_frame"` the core answers 4 cycles later. With `control = true`
-    /// a register changes k.
+    /// dropped leaves it as it was. With `scaling = "per_frame"` the core answers 4 cycles later, with `"fixed"` up to 28 on
+    /// 10 x 10 taxels. With `control = true` a register changes k.
     #[schemars(range(min = 1, max = 8), extend("examples" = [4]))]
     pub smoothing: Option<u32>,
     /// Pascals of one count, negative where larger counts press. Without this key or `curve`, frames hold pascals.
@@ -182,7 +182,8 @@ pub(super) struct AlgorithmKeys {
     /// `point`.
     #[schemars(extend("examples" = ["point"]))]
     pub kernel: Option<Kernel>,
-    /// Tikhonov regularisation of C33. Without the key `{ noise = 0.002 }` for layers deeper than 1.5 pitches, else 0.
+    /// Tikhonov regularisation of C33. Without the key, layers deeper than 1.5 pitches have that of the sensor's `noise`, or
+    /// of 0.002 if it is less; others have none.
     #[schemars(extend("examples" = [{"noise": 0.002}]))]
     pub regularisation: Option<Regularisation>,
     /// Which matrix entries are kept.

@@ -7,8 +7,8 @@ use super::Sensor;
 
 /// Depth in pitches beyond which a layer is regularised: noise would become force.
 const DEEP: f64 = 1.5;
-/// The noise that such a design allows for, as a share of the largest stress.
-const NOISE: f64 = 0.002;
+/// The noise that such a design of a sensor without noise allows for, as a share of the largest stress.
+const LEAST_NOISE: f64 = 0.002;
 /// Largest factor: beyond it the forces are those of the regularisation.
 const MAX_FACTOR: f64 = 1.0;
 /// Factor for each unit of noise, from the table of hard cases: least error over depths of 1 to 4 pitches.
@@ -43,10 +43,10 @@ pub enum Regularisation {
 }
 
 impl Regularisation {
-    /// The key `regularisation` of a design that leaves it out.
-    pub(crate) fn usual(sensor: &Sensor) -> Self {
+    /// The key `regularisation` of a design that leaves it out, for a noise as a share of the largest stress.
+    pub(crate) fn usual(sensor: &Sensor, noise: f64) -> Self {
         let [x, y] = sensor.pitch_mm;
-        if sensor.depth_mm > DEEP * x.min(y) { Self::Noise { noise: NOISE } } else { Self::None }
+        if sensor.depth_mm > DEEP * x.min(y) { Self::Noise { noise: noise.max(LEAST_NOISE) } } else { Self::None }
     }
 
     /// The share of the largest singular value; 0 for none.

@@ -54,7 +54,7 @@ fn algorithm(
     let regularisation = match keys.regularisation {
         Some(Regularisation::Factor(0.0)) => Regularisation::None,
         Some(other) => other,
-        None => Regularisation::usual(sensor),
+        None => Regularisation::usual(sensor, noise),
     };
     let kernel = keys.kernel.unwrap_or(Kernel::usual(sensor));
     let joint = match keys.estimator {
@@ -105,7 +105,7 @@ pub(super) fn keys(design: &Design, names: &FileNames) -> DesignKeys {
         (room, _) => Some(DeadKey::Room { taxels, room }),
     };
     let regularisation = match algorithm.regularisation {
-        none @ Regularisation::None if Regularisation::usual(sensor) == none => None,
+        usual if usual == Regularisation::usual(sensor, input.noise) => None,
         Regularisation::None => Some(Regularisation::Factor(0.0)),
         other => Some(other),
     };

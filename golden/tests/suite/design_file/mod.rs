@@ -64,13 +64,13 @@ fn a_design_without_its_constants_is_refused() {
     }
 }
 
-/// Kernel and regularisation follow the depth, and the resolved design says which they are.
+/// Kernel and regularisation follow depth and noise, and the resolved design says which they are.
 #[test]
 fn kernel_and_regularisation_follow_the_depth() {
     for (depth, kernel, regularisation) in [
         ("1.9", Kernel::Cell, Regularisation::None),
         ("3.0", Kernel::Point, Regularisation::None),
-        ("3.1", Kernel::Point, Regularisation::Noise { noise: 0.002 }),
+        ("3.1", Kernel::Point, Regularisation::Noise { noise: 0.005 }),
     ] {
         let text = |keys: &str| {
             let depth = BARE.replace("depth_mm = 3.0", &format!("depth_mm = {depth}"));
