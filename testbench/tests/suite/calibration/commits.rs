@@ -1,5 +1,7 @@
 //! Commits while frames run: each frame is computed with the bank that acted at its first beat, all of it.
 
+use golden::design::Outputs;
+use hdl_gen::model::Model;
 use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -8,10 +10,10 @@ use testbench::co_simulation::timeout;
 use testbench::stream::{Mode, Pattern, Traffic};
 use testbench::verilate::Built;
 
-use super::{BUSY, Subject, core, counts, errors, judged, judged_in, load, subject, version};
+use super::{BUSY, Subject, core, counts, design, errors, judged, judged_in, load, subject, version};
 use crate::support::effort::some_of;
 use crate::support::faults::{broken, some_faults};
-use crate::support::in_parallel;
+use crate::support::{built, in_parallel, planned};
 
 /// A direction whatever presses and pulls.
 const ALWAYS_KNOWN: &str = "assign no_push = &{1'b0, compression_seen, tension_seen};";
@@ -75,6 +77,49 @@ fn a_commit_at_every_moment_of_a_frame() {
         let cycles = (0..interval + 2).step_by(step);
         assert_eq!(commits_at_every_moment(subject, &subject.built, bank, cycles), Vec::<String>::new());
     }
+}
+
+/// Averages over frames go on over a commit, also of gains, which make them start again where readings step.
+#[test]
+fn averages_go_on_over_a_commit() {
+    let mut design = design(Outputs::Resultants);
+    design.name += "_averaged";
+    (design.input.smoothing, design.input.noise) = (3, 0.01);
+    let plan = planned(&design);
+    let subject = Subject { built: built(&plan), plan };
+    let interval = subject.plan.timeline.interval_cycles;
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let still = counts(&subject.plan, 1, &mut random).remove(0);
+    let mut noisy = |word: &u32| (f32::from_bits(*word) + random.random_range(-3.0..3.0)).round().to_bits();
+    let words = subject.calibration().words();
+    let frames = 14 + (loaded(words) + 7 * words as u64) / interval;
+    let packets: Vec<Vec<u32>> = (0..frames).map(|_| still.iter().map(&mut noisy).collect()).collect();
+    let [gains, _, floor] = others(&subject);
+    let cases: Vec<(&Bank, u64)> = [&gains, &floor]
+        .into_iter()
+        .flat_map(|bank| (0..interval).step_by(16).map(move |cycle| (bank, cycle)))
+        .collect();
+    let last = in_parallel(&some_of(cases), |&(bank, cycle)| {
+        let mut core = core(&subject.built, 1);
+        let accesses = load(bank, bank.crc());
+        let (commit, writes) = accesses.split_last().expect("a commit");
+        for &write in writes {
+            core.plan(10, write);
+        }
+        core.plan(loaded(words) + cycle, *commit);
+        let banks = [subject.calibration().power_up.clone(), bank.clone()];
+        judged(&subject.plan, &mut core, &packets, &banks).map(|versions| versions.last().copied())
+    });
+    assert!(last.iter().all(|last| *last == Ok(Some(1))), "{last:?}");
+    // Frames that restart the average are as without one.
+    let mut without = design;
+    without.input.smoothing = 0;
+    let [averaged, plain] = [&subject.plan, &planned(&without)].map(|plan| {
+        let mut model = Model::new(plan);
+        packets.iter().map(|packet| model.process(packet)).collect::<Vec<_>>()
+    });
+    let differ = averaged.iter().zip(&plain).filter(|(averaged, plain)| averaged != plain).count();
+    assert!(2 * differ > packets.len(), "{differ} of {}", packets.len());
 }
 
 /// Banks come one after the other, as fast as they can be written, while good and bad frames run with pauses.
