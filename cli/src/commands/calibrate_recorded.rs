@@ -134,8 +134,10 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
         found.check().map_err(|problem| format!("{}: {problem}", weight.file.display()))?;
     }
     let (mut design, mut results) = fitted;
-    if let (Some(pressed), Some(found)) = (&given[1], &results[1]) {
-        pressed.refuse_missing(found)?;
+    for (place, what) in ["the pressure", "F_z"].into_iter().enumerate() {
+        if let (Some(pressed), Some(found)) = (&given[place], &results[place]) {
+            pressed.refuse_missing(found, what)?;
+        }
     }
     if let Some(found) = results.iter_mut().flatten().last().filter(|_| !settled) {
         found.remarks.push(format!(
@@ -226,15 +228,15 @@ impl<'a> Pressed<'a> {
     }
 
     /// Refuses large errors of what was paired line by line.
-    fn refuse_missing(&self, found: &Recorded) -> std::result::Result<(), String> {
+    fn refuse_missing(&self, found: &Recorded, what: &str) -> std::result::Result<(), String> {
         let Some(errors) = found.errors.as_ref().or(found.errors_fitted.as_ref()) else { return Ok(()) };
         let [median, worst] = MISSING;
         if self.has_times || errors.median <= median && errors.worst <= worst {
             return Ok(());
         }
         Err(format!(
-            "{}: F_z errs by {:.0} % in the median, {:.0} % at worst; frames may be missing: give a column of times in both \
-             files",
+            "{}: {what} errs by {:.0} % in the median, {:.0} % at worst; frames may be missing: give a column of times in both \
+             files, or cut them so that they begin together",
             self.file.display(),
             errors.median,
             errors.worst

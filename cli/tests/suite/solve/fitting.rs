@@ -356,3 +356,45 @@ fn gains_are_those_of_readings_without_creep() {
         assert!(worst(&design) > 0.2, "{counts}: {}", worst(&design));
     }
 }
+
+/// Too few frames for a lag: the error alone tells that the pressures are those of other frames.
+#[test]
+fn pressures_of_other_frames_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let [pad, frames, pressures, found] =
+        ["pad.toml", "bladder.csv", "pressures.csv", "found.toml"].map(|name| folder.path().join(name));
+    fs::write(
+        &pad,
+        format!("{PLAIN}name = \"pad\"\n[sensor]\ncolumns = 3\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\npa_per_count = -10.0\n"),
+    )
+    .unwrap();
+    let steps: Vec<u32> = [0, 5, 10, 20, 40, 60, 30, 0, 20, 60, 0].into_iter().flat_map(|step| [step; 3]).collect();
+    let counts = |(frame, step): (usize, &u32)| {
+        let taxel = |taxel: usize| (100 * step + ((5 * frame + 3 * taxel) % 4) as u32).to_string();
+        (0..9).map(taxel).collect::<Vec<_>>().join(",") + "\n"
+    };
+    fs::write(&frames, steps.iter().enumerate().map(counts).collect::<String>()).unwrap();
+    let calibrate = |late: usize| {
+        let logged = (0..steps.len()).map(|line| format!("{}\n", line.checked_sub(late).map_or(0, |line| steps[line])));
+        fs::write(&pressures, format!("pressure (kPa)\n{}", logged.collect::<String>())).unwrap();
+        sptfra(&[
+            "calibrate",
+            text(&pad),
+            "--uniform",
+            text(&frames),
+            "--pressures",
+            text(&pressures),
+            "--out",
+            text(&found),
+        ])
+    };
+    let refused = calibrate(2);
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!(refused.status.code(), Some(1), "{said}");
+    for part in ["bladder.csv: the pressure errs by ", "column of times in both files", "begin together"] {
+        assert!(said.contains(part), "{said}");
+    }
+    assert!(!found.exists());
+    let together = calibrate(0);
+    assert!(together.status.success(), "{together:?}");
+}

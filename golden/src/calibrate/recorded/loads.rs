@@ -28,21 +28,23 @@ pub(super) type Wrong = (String, String);
 /// Frames, what was measured with each, and what is to be known of it.
 pub(super) type Pairs<'a> = (&'a [Vec<f64>], Measured, Vec<String>);
 
-/// Frames and lines of the forces, one for one. Where they do not begin together, the lag is found.
+/// Frames and lines of the forces or pressures, one for one. Where they do not begin together, the lag is found.
 pub(super) fn pair<'a>(design: &Design, frames: &'a [Vec<f64>], measured: &Measured) -> Result<Pairs<'a>, Wrong> {
+    let is_bladder = measured.pressures.iter().any(Option::is_some);
+    let what = if is_bladder { "pressures" } else { "forces" };
     let (count, lines) = (frames.len(), measured.forces.len());
     let apart = count.abs_diff(lines);
     if apart as f64 > LENGTHS * count as f64 {
         return Err((
-            format!("{count} frames and {lines} lines of forces"),
+            format!("{count} frames and {lines} lines of {what}"),
             "give one line for each frame; leave blank what is unknown".to_owned(),
         ));
     }
     let is_alive = |(taxel, _): &(usize, &f64)| !design.input.dead.contains(taxel);
     let sum = |frame: &Vec<f64>| frame.iter().enumerate().filter(is_alive).map(|(_, value)| value).sum();
     let readings: Vec<f64> = frames.iter().map(sum).collect();
-    // Pressures of a bladder rise in steps, which any lag fits.
-    let loads: Vec<Option<f64>> = measured.forces.iter().map(|force| force[2]).collect();
+    let loads: Vec<Option<f64>> =
+        if is_bladder { measured.pressures.clone() } else { measured.forces.iter().map(|force| force[2]).collect() };
     let (clock, remedy) = match measured.pairing {
         Pairing::Lines => {
             (false, "give both files a column of times, or cut them so that both begin with the same touch")
@@ -67,14 +69,14 @@ pub(super) fn pair<'a>(design: &Design, frames: &'a [Vec<f64>], measured: &Measu
     let both = frames.len().min(lines - from);
     let parts = Parts::of(&readings[skip(-lag)..][..both], &loads[from..][..both]);
     if let Some((place, count)) = parts.missing().filter(|_| !clock) {
-        let what = match count {
+        let lost = match count {
             1 => "1 frame is".to_owned(),
-            -1 => "1 line of forces is".to_owned(),
+            -1 => format!("1 line of {what} is"),
             2.. => format!("{count} frames are"),
-            _ => format!("{} lines of forces are", -count),
+            _ => format!("{} lines of {what} are", -count),
         };
         return Err((
-            format!("about frame {}, {what} missing", skip(-lag) + place + 1),
+            format!("about frame {}, {lost} missing", skip(-lag) + place + 1),
             "give both files a column of times, or cut them there".to_owned(),
         ));
     }
@@ -91,7 +93,7 @@ pub(super) fn pair<'a>(design: &Design, frames: &'a [Vec<f64>], measured: &Measu
         ));
     } else if apart > 0 {
         remarks.push(format!(
-            "{count} frames and {lines} lines of forces: paired from the first on, the last {apart} left out; check that the \
+            "{count} frames and {lines} lines of {what}: paired from the first on, the last {apart} left out; check that the \
              first belong together"
         ));
     }

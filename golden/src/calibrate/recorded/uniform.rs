@@ -14,7 +14,7 @@ use super::shape::{self, Kind, Shape, Terms};
 use super::table::Measured;
 use crate::dead_taxels::MOST_DEAD;
 use crate::design::Design;
-use crate::numbers::middle;
+use crate::numbers::{magnitude, middle};
 
 /// A taxel that reads less than this share of what the others do is dead.
 const DEAD: f64 = 0.1;
@@ -93,8 +93,9 @@ pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
     let all: Vec<usize> = (0..parted.all.len()).collect();
     let (shape, gains) = work.fit(kind, &all);
     let fitted = work.errors(&shape, &gains, &all);
-    let largest = work.stress(&shape, &gains).fold(0.0, f64::max);
-    let calibrated = work.readings.calibrated(&design, &shape, &gains, [f64::INFINITY, largest], &mut remarks);
+    let peaks = work.peaks(&shape, &gains);
+    let range = [peaks.iter().copied().fold(f64::INFINITY, f64::min), magnitude(&peaks)];
+    let calibrated = work.readings.calibrated(&design, &shape, &gains, range, &mut remarks);
     let mean = |holds: &Step| {
         let terms = work.terms(&[], &[], &[]);
         let of = |taxel: usize| gains[taxel] * shape.at(taxel, holds.x[taxel], &terms);
@@ -215,12 +216,14 @@ impl<'a> Uniform<'a> {
         errors.collect()
     }
 
-    fn stress(&self, shape: &Shape, gains: &[f64]) -> impl Iterator<Item = f64> {
+    /// The largest stress of each hold.
+    fn peaks(&self, shape: &Shape, gains: &[f64]) -> Vec<f64> {
         let terms = self.terms(&[], &[], &[]);
-        let of = |hold: &Step| -> Vec<f64> {
-            self.living().map(|taxel| gains[taxel] * shape.at(taxel, hold.x[taxel], &terms)).collect()
+        let peak = |hold: &Step| {
+            let stress = self.living().map(|taxel| gains[taxel] * shape.at(taxel, hold.x[taxel], &terms));
+            stress.fold(0.0, f64::max)
         };
-        self.holds.all.iter().flat_map(of).collect::<Vec<_>>().into_iter()
+        self.holds.all.iter().map(peak).collect()
     }
 }
 

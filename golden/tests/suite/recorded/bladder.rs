@@ -83,3 +83,27 @@ fn a_bladder_is_read_through_crosstalk() {
         assert!((found / truth - 1.0).abs() < 1e-3, "{taxel}: {found} {truth}");
     }
 }
+
+/// A log of pressures that begins earlier or later than the frames.
+#[test]
+fn pressures_of_another_moment_are_paired_or_refused() {
+    let mut random = ChaCha8Rng::seed_from_u64(78);
+    let kilopascals = [0.0, 5.0, 10.0, 20.0, 40.0, 60.0, 30.0, 0.0, 20.0, 60.0, 0.0];
+    let pressures: Vec<f64> = kilopascals.into_iter().flat_map(|pressure| [1e3 * pressure; 50]).collect();
+    let frames: Vec<Vec<f64>> = pressures
+        .iter()
+        .map(|pressure| (0..78).map(|_| (pressure / 24.4 + normal(&mut random)).round()).collect())
+        .collect();
+    let (rest, some) = (vec![0.0; 10], pressures.len() - 10);
+    for (logged, said) in [
+        ([&rest[..], &pressures[..some]].concat(), "line 11 to frame 1"),
+        ([&pressures[10..], &rest[..]].concat(), "line 1 to frame 11"),
+    ] {
+        let measured = Measured::of_pressures(logged.into_iter().map(Some).collect());
+        let found = fit_uniform(&design(COUNTS, ""), &frames, &measured).unwrap();
+        assert!(says(&found.remarks, &["paired by what fits best", said]), "{:?}", found.remarks);
+        assert!(found.errors.unwrap().worst < 2.0, "{said}: {:?}", found.errors);
+        let floor = found.design.algorithm.noise_floor_pa;
+        assert!(floor < 5.0 * 24.4, "{said}: {floor}");
+    }
+}
