@@ -32,6 +32,8 @@ pub(super) struct Cells {
     pub(super) number: usize,
     /// That of the first row, or what a line `sep=;` says.
     pub(super) separator: Option<Separator>,
+    /// Cells of the first row that was read, blank ones among them.
+    pub(super) width: Option<usize>,
     /// Whether a row was there.
     pub(super) has_rows: bool,
     /// The lines of the header.
@@ -57,7 +59,9 @@ impl Cells {
         let line = if self.number == 1 { line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line) } else { line };
         let content = line.trim_ascii();
         let is_skipped = self.number <= self.skip;
-        if let Some(remark) = content.strip_prefix(b"#") {
+        if let Some(remark) = content.strip_prefix(b"#")
+            && !self.is_unreadable(remark)
+        {
             if !self.has_rows && !is_skipped {
                 self.remarks.push((self.number, remark.trim_ascii().to_vec()));
             }
@@ -80,6 +84,14 @@ impl Cells {
             Some(separator) => Err(FrameError::Separator { path: self.path.clone(), line: self.number, separator }),
             None => Ok(Line::Cells(content, separator)),
         }
+    }
+
+    /// Whether a line behind its # is a row whose first cell a spreadsheet could not fill, as #N/A. A row behind a # is a remark.
+    fn is_unreadable(&self, remark: &[u8]) -> bool {
+        let Some(separator @ Separator::Byte(_)) = self.separator else { return false };
+        let cells = separator.split(remark);
+        let is_number = |cell: &&[u8]| separator::number(cell).is_some();
+        self.width == Some(cells.len()) && no_number(cells[0]) && cells.len() > 1 && cells[1..].iter().all(is_number)
     }
 
     /// Takes the line for one of the header. What separates its names may be another character than in the rows.
@@ -201,6 +213,7 @@ impl<'a> Table<'a> {
                         continue;
                     }
                     cells.begin(separator);
+                    cells.width.get_or_insert(fields.len());
                     rows.push((cells.number, fields));
                 }
                 _ => {}

@@ -150,7 +150,10 @@ impl Lines {
         }
         self.cells.begin(separator);
         match self.values(separator, content) {
-            Ok(row) => Ok(Some(row)),
+            Ok(row) => {
+                self.cells.width.get_or_insert(separator.split(content).len());
+                Ok(Some(row))
+            }
             Err(error) => self.leave_out(number, error),
         }
     }
@@ -211,6 +214,7 @@ impl Lines {
             self.padded = Some(cells.len());
         }
         let end = self.columns().map_or(fields.len(), |[_, last]| last);
+        self.refuse_shifted(cells.len(), separator.fields(content).len(), end)?;
         if fields.len() < end {
             return Err(self.wrong_length(fields.len(), end));
         }
@@ -247,6 +251,25 @@ impl Lines {
         let mut ordered = row.clone();
         order.iter().zip(row).for_each(|(&taxel, value)| ordered[taxel] = value);
         Ok(ordered)
+    }
+
+    /// Refuses a line of so many cells, `filled` without blank ones at its end, whose values may stand in other columns: more
+    /// than names, or others than the first row where no header names the columns up to `end`.
+    fn refuse_shifted(&self, cells: usize, filled: usize, end: usize) -> Result<(), FrameError> {
+        let names = self.cells.names.len();
+        let (is_wrong, expected, than) = match self.cells.width {
+            _ if self.columns().is_none() => return Ok(()),
+            _ if names >= end => (filled > names, names, "the header has names"),
+            Some(width) => (filled > width || cells < width, width, "the first row has"),
+            None => return Ok(()),
+        };
+        let problem = format!(
+            "{} where {than}: {expected}; are these decimal commas or separators of thousands? Separate the cells by \
+             semicolons, and give each column a name and each row all its cells",
+            counted(if filled > expected { filled } else { cells }, "cell")
+        );
+        let wrong = FrameError::Shape { path: self.cells.path.clone(), line: self.cells.number, problem };
+        if is_wrong { Err(wrong) } else { Ok(()) }
     }
 
     /// A line of another length than `expected`, the labels among it.

@@ -90,6 +90,28 @@ fn separators_of_thousands_are_asked_for() {
 }
 
 #[test]
+fn more_cells_than_names_shift_no_taxel() {
+    let head = "t,p0,p1,p2,p3,p4,p5\n";
+    let shifted = format!("{head}0,-7.5,-1,0,2,-3,5,\n0,01,-8,-2,1,0.5,-4,6\n");
+    refused(read(&shifted, 0), &["line 3", "8 cells", "names: 7", "Separate the cells by semicolons"]);
+    let rows = "0,-7.5,-1,0,2,-3,5,9\n0,01,-8,-2,1,0.5,-4,6,9\n1,-8,-2,1,0.5,-4,6,9\n";
+    let columns = Layout { columns: Some([2, 7]), ..Layout::default() };
+    refused(read(rows, columns.clone()), &["line 2", "9 cells", "first row has: 8"]);
+    refused(read("0,-7.5,-1,0,2,-3,5,9\n-8,-2,1,0.5,-4,6,9\n", columns.clone()), &["line 2", "7 cells"]);
+    let found = both(read(rows, Layout { skip_bad: true, ..columns }));
+    assert_eq!(found.skipped, [1]);
+}
+
+#[test]
+fn a_row_with_an_error_of_a_spreadsheet_is_no_remark() {
+    let text = "-7.5,-1,0,2,-3,5\n#N/A,1,2,3,4,5\n#1,1,2,3,4,5\n-8,-2,1,0.5,-4,6\n";
+    refused(read(text, 0), &["line 2, column 1", "#N/A"]);
+    assert_eq!(both(read(text, Layout { skip_bad: true, ..Layout::default() })).skipped, [1]);
+    let dead = read_bytes("frames.csv", text.as_bytes(), &pad("dead = [0]"), 0).unwrap();
+    assert_eq!(dead.frames[1], [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+}
+
+#[test]
 fn a_header_of_sensor_numbers_is_none_of_the_frames() {
     for (text, labels) in [
         // With gaps, and behind a word.
