@@ -119,6 +119,14 @@ pub(super) fn join<'a>(
     let is_marked = |line: &Line| line.row.is_some() && line.content.iter().any(|byte| b";\t".contains(byte));
     let separator = if all.iter().any(is_marked) { b';' } else { 0x1f };
     let unit = unit(&all);
+    let other = all.iter().filter(|line| line.row.is_none()).filter_map(named).find(|(_, other)| {
+        let first = unit.as_ref().map(|(_, unit)| pascals(unit));
+        !target.counts && first.is_some_and(|first| pascals(other).is_some_and(|other| Some(other) != first))
+    });
+    if let (Some((above, unit)), Some((line, other))) = (&unit, other) {
+        let remedy = "give all frames in one unit, or a file for each";
+        return Err(wrong(line, format!("the unit {other} where line {above} says {unit}: {remedy}")));
+    }
     let (mut frames, mut run) = (Vec::new(), Vec::new());
     let last = all.iter().rposition(|line| !line.content.is_empty()).map_or(0, |last| last + 1);
     all.truncate(last);
@@ -206,17 +214,21 @@ fn behind_labels<'a>(mut lines: Vec<Line<'a>>, numbers: &Sensor, rows: usize) ->
     are_labels.then_some(lines)
 }
 
-/// The unit that a line of words above the frames names: a known one, or else the word behind "unit".
+/// The unit that lines of words above the frames name: the first known one, or else the first.
 fn unit(lines: &[Line]) -> Option<(usize, String)> {
-    let mut words = lines.iter().take_while(|line| line.row.as_ref().is_none_or(|row| row.len() < 2));
-    words.find_map(|line| {
-        let text = String::from_utf8_lossy(line.content);
-        let is_unit = |word: &&str| ["unit", "einheit"].iter().any(|unit| word.to_lowercase().contains(unit));
-        let mut words =
-            text.split([' ', '\t', ':', '=', ',', ';', '"', '(', ')', '[', ']']).filter(|word| !word.is_empty());
-        words.find(is_unit)?;
-        let behind: Vec<&str> = words.collect();
-        let unit = behind.iter().find(|word| pascals(word).is_some()).or(behind.first())?;
-        Some((line.number, unit.replace(char::is_control, "")))
-    })
+    let above = lines.iter().take_while(|line| line.row.as_ref().is_none_or(|row| row.len() < 2));
+    let units: Vec<(usize, String)> = above.filter_map(named).collect();
+    units.iter().find(|(_, unit)| pascals(unit).is_some()).or(units.first()).cloned()
+}
+
+/// The unit that a line names, and the line: a known one, or else the word behind "unit".
+fn named(line: &Line) -> Option<(usize, String)> {
+    let text = String::from_utf8_lossy(line.content);
+    let is_unit = |word: &&str| ["unit", "einheit"].iter().any(|unit| word.to_lowercase().contains(unit));
+    let mut words =
+        text.split([' ', '\t', ':', '=', ',', ';', '"', '(', ')', '[', ']']).filter(|word| !word.is_empty());
+    words.find(is_unit)?;
+    let behind: Vec<&str> = words.collect();
+    let unit = behind.iter().find(|word| pascals(word).is_some()).or(behind.first())?;
+    Some((line.number, unit.replace(char::is_control, "")))
 }

@@ -103,6 +103,13 @@ fn more_cells_than_names_shift_no_taxel() {
 }
 
 #[test]
+fn blocks_have_one_unit() {
+    let text = "SITE Community Hospital\nUNITS kPa\n1 2 3\n4 5 6\n\nUNITS psi\n1 2 3\n4 5 6\n";
+    refused(read(text, 0), &["line 6", "unit psi", "line 2 says kPa", "all frames in one unit"]);
+    assert_eq!(read(&text.replace("psi", "kPa"), 0).unwrap().frames[0][0], -1000.0);
+}
+
+#[test]
 fn a_row_with_an_error_of_a_spreadsheet_is_no_remark() {
     let text = "-7.5,-1,0,2,-3,5\n#N/A,1,2,3,4,5\n#1,1,2,3,4,5\n-8,-2,1,0.5,-4,6\n";
     refused(read(text, 0), &["line 2, column 1", "#N/A"]);
