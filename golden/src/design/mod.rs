@@ -210,6 +210,9 @@ impl Design {
         let usual = self.hardware.full_scale_pa / NOISE_FLOOR_DIVISOR;
         keys.algorithm.noise_floor_pa =
             keys.algorithm.noise_floor_pa.filter(|floor| floor.to_bits() != usual.to_bits());
+        // Follows the noise.
+        let usual = Regularisation::usual(&self.sensor, self.input.noise);
+        keys.algorithm.regularisation = keys.algorithm.regularisation.filter(|written| *written != usual);
         commented::commented(&self.name, &toml::Table::try_from(keys).unwrap_or_default())
     }
 }

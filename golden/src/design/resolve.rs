@@ -105,7 +105,7 @@ pub(super) fn keys(design: &Design, names: &FileNames) -> DesignKeys {
         (room, _) => Some(DeadKey::Room { taxels, room }),
     };
     let regularisation = match algorithm.regularisation {
-        usual if usual == Regularisation::usual(sensor, input.noise) => None,
+        none @ Regularisation::None if Regularisation::usual(sensor, input.noise) == none => None,
         Regularisation::None => Some(Regularisation::Factor(0.0)),
         other => Some(other),
     };

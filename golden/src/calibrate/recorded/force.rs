@@ -35,7 +35,7 @@ const APART: f64 = 0.03;
 /// [`RecordedError::Recording`] for frames and forces that do not belong together or tell nothing at all.
 pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> Result<Recorded, RecordedError> {
     let wrong = |wrong| RecordedError::of(design, wrong);
-    let (frames, measured, mut remarks) = loads::pair(design, frames, measured).map_err(wrong)?;
+    let (frames, measured, mut remarks) = loads::pair(design, frames, measured, false).map_err(wrong)?;
     remarks.splice(0..0, measured.remarks.iter().cloned());
     if sideways::is_all(&measured) {
         return sideways::fit(design, frames, measured, remarks);

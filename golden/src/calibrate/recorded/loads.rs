@@ -28,9 +28,14 @@ pub(super) type Wrong = (String, String);
 /// Frames, what was measured with each, and what is to be known of it.
 pub(super) type Pairs<'a> = (&'a [Vec<f64>], Measured, Vec<String>);
 
-/// Frames and lines of the forces or pressures, one for one. Where they do not begin together, the lag is found.
-pub(super) fn pair<'a>(design: &Design, frames: &'a [Vec<f64>], measured: &Measured) -> Result<Pairs<'a>, Wrong> {
-    let is_bladder = measured.pressures.iter().any(Option::is_some);
+/// Frames and lines of the forces, or of a bladder's pressures, one for one. Where they do not begin together, the lag is
+/// found.
+pub(super) fn pair<'a>(
+    design: &Design,
+    frames: &'a [Vec<f64>],
+    measured: &Measured,
+    is_bladder: bool,
+) -> Result<Pairs<'a>, Wrong> {
     let what = if is_bladder { "pressures" } else { "forces" };
     let (count, lines) = (frames.len(), measured.forces.len());
     let apart = count.abs_diff(lines);
@@ -261,7 +266,7 @@ mod tests {
                     pitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\npa_per_count = -2.0\n";
         let design = Design::from_toml(text, "pad.toml").unwrap();
         let frames: Vec<Vec<f64>> = readings.iter().map(|&reading| vec![reading; 4]).collect();
-        pair(&design, &frames, measured).map(|(_, _, remarks)| remarks)
+        pair(&design, &frames, measured, false).map(|(_, _, remarks)| remarks)
     }
 
     /// Between -1 and 1.
@@ -314,6 +319,16 @@ mod tests {
                 assert!((said - expected).abs() < 1600.0 / 8.0, "{lost} {begin}: {problem}, not {expected}");
             }
         }
+    }
+
+    /// Such as that of the air.
+    #[test]
+    fn a_column_of_pressures_beside_forces_is_not_the_load() {
+        let loads = touches(1600);
+        let mut measured = measured(&loads);
+        measured.pressures = vec![Some(101_325.0); loads.len()];
+        let remarks = pair_all(&loads[20..], &measured).unwrap();
+        assert!(remarks.iter().any(|remark| remark.contains("line 21 to frame 1")), "{remarks:?}");
     }
 
     /// Touches that are alike, with a strength of their own, `period` frames apart.

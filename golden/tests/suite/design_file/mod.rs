@@ -80,6 +80,11 @@ fn kernel_and_regularisation_follow_the_depth() {
         assert_eq!((usual.algorithm.kernel, usual.algorithm.regularisation), (kernel, regularisation), "{depth}");
         let other = Design::from_toml(&text("kernel = \"point\"\nregularisation = 0"), "pad.toml").unwrap();
         assert_eq!((other.algorithm.kernel, other.algorithm.regularisation), (Kernel::Point, Regularisation::None));
+        let is_deep = regularisation != Regularisation::None;
+        assert_eq!(usual.to_toml().contains("regularisation"), is_deep, "{depth}");
+        let edited = usual.to_commented_toml().replace("\nnoise = 0.005\n", "\nnoise = 0.01\n");
+        let edited = Design::from_toml(&edited, "edited").unwrap().algorithm.regularisation;
+        assert_eq!(edited, if is_deep { Regularisation::Noise { noise: 0.01 } } else { Regularisation::None });
         for design in [usual, other] {
             assert_eq!(Design::from_toml(&design.to_toml(), "resolved").unwrap(), design);
         }
