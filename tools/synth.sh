@@ -38,5 +38,5 @@ for design in "$@"; do
     }
     cells --json > "$name.cells.json"
     cells --levels "$top/xtask/levels.toml" ${RECORD:+--record}
-    echo "LUT and FF are too high: for this family Yosys packs no register into a DSP or a block RAM output."
 done
+echo "LUT and FF are too high: for this family Yosys packs no register into a DSP or a block RAM output."

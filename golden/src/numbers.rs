@@ -1,4 +1,4 @@
-//! Largest magnitudes, middles, correlations and roundings of values.
+//! Largest magnitudes, middles, correlations and roundings of values, and numbers of things in words.
 
 use std::borrow::Borrow;
 

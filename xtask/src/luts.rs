@@ -24,8 +24,8 @@ const BLOCKS: &str = "results/cells.csv";
 /// Where a table has a design's sum.
 const ALL: &str = "all";
 const ABOUT: &str = "\
-# LUTs and flip-flops by Yosys (synth_xilinx -family xcup) of designs in xtask/designs/counted.toml; of some without modules
-# cells.csv has the blocks. A module counts with what it instantiates, but for modules that have rows of their own.
+# LUTs and flip-flops by Yosys (synth_xilinx -family xcup). Designs are those of xtask/designs/counted.toml and cells.csv.
+# A module counts with what it instantiates, but for modules that have rows of their own.
 # Errors, in percent, are those of a fit without the design; there is none of a design with a part that no other has.
 # command: make luts
 design,module,lut,ff,lut_error,ff_error,hash

@@ -11,7 +11,7 @@ const DEEP: f64 = 1.5;
 const LEAST_NOISE: f64 = 0.002;
 /// Largest factor: beyond it the forces are those of the regularisation.
 const MAX_FACTOR: f64 = 1.0;
-/// Factor for each unit of noise, from the table of hard cases: least error over depths of 1 to 4 pitches.
+/// Factor for each unit of noise, from the table of corner cases: least error over depths of 1 to 4 pitches.
 const FACTOR_PER_NOISE: f64 = 4.0;
 
 /// What is added to the diagonal of C33, as a share of its largest singular value (Tikhonov's regularisation in the

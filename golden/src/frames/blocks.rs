@@ -19,6 +19,8 @@ struct Line<'a> {
     content: &'a [u8],
     /// Its fields behind the labels, if they are numbers.
     row: Option<Vec<&'a [u8]>>,
+    /// Its label, where rows have one that says their place in the frame.
+    label: Option<&'a [u8]>,
 }
 
 /// Frames of a file, each on one line.
@@ -76,7 +78,7 @@ pub(super) fn join<'a>(
     let behind = |labels: usize| -> Vec<Line<'a>> {
         let of = |(index, line): (usize, &'a [u8])| {
             let content = Separator::of(line.trim_ascii()).trim(line);
-            Line { number: index + 1, content, row: row(content, columns, labels, end) }
+            Line { number: index + 1, content, row: row(content, columns, labels, end), label: None }
         };
         separator::lines(bytes).enumerate().skip(layout.skip_lines).map(of).collect()
     };
@@ -115,25 +117,28 @@ pub(super) fn join<'a>(
     if is_numbered {
         all.iter_mut().filter(|line| Some(line.content) == head).for_each(|line| line.row = None);
     }
+    if end.is_some() {
+        keep_width(&mut all, columns, layout.skip_bad).map_err(|(line, problem)| wrong(line, problem))?;
+    }
     // Points between semicolons or tabs may separate thousands; no number has a control character.
     let is_marked = |line: &Line| line.row.is_some() && line.content.iter().any(|byte| b";\t".contains(byte));
     let separator = if all.iter().any(is_marked) { b';' } else { 0x1f };
     let unit = unit(&all);
-    let other = all.iter().filter(|line| line.row.is_none()).filter_map(named).find(|(_, other)| {
-        let first = unit.as_ref().map(|(_, unit)| pascals(unit));
-        !target.counts && first.is_some_and(|first| pascals(other).is_some_and(|other| Some(other) != first))
-    });
-    if let (Some((above, unit)), Some((line, other))) = (&unit, other) {
-        let remedy = "give all frames in one unit, or a file for each";
-        return Err(wrong(line, format!("the unit {other} where line {above} says {unit}: {remedy}")));
+    if !target.counts {
+        one_unit(&all, unit.as_ref()).map_err(|(line, problem)| wrong(line, problem))?;
     }
     let (mut frames, mut run) = (Vec::new(), Vec::new());
     let last = all.iter().rposition(|line| !line.content.is_empty()).map_or(0, |last| last + 1);
     all.truncate(last);
-    all.push(Line { number: last + layout.skip_lines, content: b"", row: None });
-    for (index, Line { number, content, row }) in all.iter().enumerate() {
+    all.push(Line { number: last + layout.skip_lines, content: b"", row: None, label: None });
+    let in_order: Vec<&[u8]> = all.iter().filter_map(|line| line.label).take(rows).collect();
+    for (index, Line { number, content, row, label }) in all.iter().enumerate() {
         match row {
-            Some(row) if row.len() == columns => run.push((*number, Some(row.join(&separator)))),
+            // A row in the place of another is as good as damaged.
+            Some(row) if row.len() == columns => {
+                let belongs = label.is_none_or(|label| in_order[run.len() % rows] == label);
+                run.push((*number, belongs.then(|| row.join(&separator))));
+            }
             // A row that is damaged ends no frame.
             _ if layout.skip_bad && run.len() % rows > 0 && Some(*content) != head && is_damaged(content) => {
                 run.push((*number, None));
@@ -156,7 +161,8 @@ pub(super) fn join<'a>(
                 for frame in run[..whole * rows].chunks(rows) {
                     let damaged = frame.iter().find(|(_, row)| row.is_none());
                     let joined = frame.iter().map_while(|(_, row)| row.as_deref()).collect::<Vec<_>>().join(&separator);
-                    let problem = || format!("this row of a block has no {columns} numbers");
+                    let problem =
+                        || format!("this row of a block has no {columns} numbers, or the label of another row");
                     frames.push((frame[0].0, damaged.map_or(Ok(joined), |(line, _)| Err(wrong(*line, problem())))));
                 }
                 if whole * rows < found {
@@ -204,6 +210,7 @@ fn behind_labels<'a>(mut lines: Vec<Line<'a>>, numbers: &Sensor, rows: usize) ->
             line.row = None;
         } else {
             labels.push(label);
+            line.label = Some(label);
         }
     }
     let first = labels.get(..rows)?;
@@ -212,6 +219,36 @@ fn behind_labels<'a>(mut lines: Vec<Line<'a>>, numbers: &Sensor, rows: usize) ->
         first.iter().all(|label| no_number(label)) && (1..rows).all(|row| !first[..row].contains(&first[row]));
     let are_labels = (counts(0) || counts(1) || are_words) && labels.iter().all(|label| first.contains(label));
     are_labels.then_some(lines)
+}
+
+/// Refuses rows of another number of cells than the first, or leaves them out: columns of values stay where they are only if
+/// all rows have as many.
+fn keep_width(all: &mut [Line], columns: usize, skip_bad: bool) -> Result<(), (usize, String)> {
+    let cells = |line: &Line| Separator::of(line.content).split(line.content).len();
+    let mut rows = all.iter_mut().filter(|line| line.row.as_ref().is_some_and(|row| row.len() == columns));
+    let width = rows.next().map_or(0, |line| cells(line));
+    for line in rows.filter(|line| cells(line) != width) {
+        if !skip_bad {
+            let found = counted(cells(line), "cell");
+            return Err((line.number, format!("{found} where the first row of the blocks has {width}")));
+        }
+        line.row = None;
+    }
+    Ok(())
+}
+
+/// Refuses a second unit of pressure. Without a unit above the frames they are pascals.
+fn one_unit(all: &[Line], unit: Option<&(usize, String)>) -> Result<(), (usize, String)> {
+    let first = unit.map_or(Some(1.0), |(_, unit)| pascals(unit));
+    let mut named = all.iter().filter(|line| line.row.is_none()).filter_map(named);
+    let other = named.find(|(_, other)| pascals(other).is_some_and(|other| Some(other) != first));
+    other.map_or(Ok(()), |(line, other)| {
+        let before = unit.map_or_else(
+            || "the frames above have none".to_owned(),
+            |(above, unit)| format!("line {above} says {unit}"),
+        );
+        Err((line, format!("the unit {other} where {before}: give all frames in one unit, or a file for each")))
+    })
 }
 
 /// The unit that lines of words above the frames name: the first known one, or else the first.
@@ -224,7 +261,10 @@ fn unit(lines: &[Line]) -> Option<(usize, String)> {
 /// The unit that a line names, and the line: a known one, or else the word behind "unit".
 fn named(line: &Line) -> Option<(usize, String)> {
     let text = String::from_utf8_lossy(line.content);
-    let is_unit = |word: &&str| ["unit", "einheit"].iter().any(|unit| word.to_lowercase().contains(unit));
+    let is_unit = |word: &&str| {
+        let word = word.to_lowercase();
+        word.starts_with("unit") || ["unit", "units"].iter().any(|end| word.ends_with(end)) || word.contains("einheit")
+    };
     let mut words =
         text.split([' ', '\t', ':', '=', ',', ';', '"', '(', ')', '[', ']']).filter(|word| !word.is_empty());
     words.find(is_unit)?;

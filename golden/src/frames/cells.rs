@@ -88,10 +88,17 @@ impl Cells {
 
     /// Whether a line behind its # is a row whose first cell a spreadsheet could not fill, as #N/A. A row behind a # is a remark.
     fn is_unreadable(&self, remark: &[u8]) -> bool {
-        let Some(separator @ Separator::Byte(_)) = self.separator else { return false };
+        let separator = self.separator.unwrap_or_else(|| Separator::of(remark));
         let cells = separator.split(remark);
-        let is_number = |cell: &&[u8]| separator::number(cell).is_some();
-        self.width == Some(cells.len()) && no_number(cells[0]) && cells.len() > 1 && cells[1..].iter().all(is_number)
+        let is_cell = |cell: &&[u8]| {
+            separator::number(cell).is_some() || cell.starts_with(b"#") || is_unknown(&String::from_utf8_lossy(cell))
+        };
+        let width = self.width.unwrap_or(self.names.len());
+        separator != Separator::Spaces
+            && cells.len() > 1
+            && cells.len() == width
+            && no_number(cells[0])
+            && cells[1..].iter().all(is_cell)
     }
 
     /// Takes the line for one of the header. What separates its names may be another character than in the rows.

@@ -74,14 +74,18 @@ impl Header {
         }
         let units = || values.iter().map(|name| split(name).1);
         let unit = split(&values[0]).1;
-        let other = units().find(|other| pascals(other) != pascals(unit));
+        // What is in brackets may be a place: only what is a unit can differ.
+        let is_unit = |unit: &str| no_pressure(unit).is_some();
+        let is_other =
+            |other: &&str| pascals(other) != pascals(unit) || *other != unit && (is_unit(other) || is_unit(unit));
+        let other = units().find(is_other);
         if let Some(other) = other.filter(|_| !target.counts) {
             let [one, other] = [unit, other].map(|unit| if unit.is_empty() { "none" } else { unit });
             return Err(format!(
                 "the header names several units, {one} and {other}: give all values in one unit, and name it in each column"
             ));
         }
-        if !unit.is_empty() && units().all(|other| other == unit) {
+        if !unit.is_empty() && units().all(|other| other == unit || pascals(other).is_some()) {
             let (worth, remark) = worth(unit, target, 1.0)?;
             header.unit = worth;
             header.remarks.extend(remark);

@@ -15,8 +15,8 @@ use testbench::stream_words::packets;
 pub const REPETITIONS: usize = 5;
 /// A repetition takes about this time.
 const ENOUGH: Duration = Duration::from_millis(500);
-/// Frames in the trial that decides how many frames a repetition has.
-const TRIAL_FRAMES: usize = 4;
+/// Frames of the first run, which decides how many frames a repetition has.
+const FIRST_FRAMES: usize = 4;
 const MOST_FRAMES: usize = 10_000;
 const SEED: u32 = 1;
 
@@ -56,9 +56,9 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Rate>, B
             let outcome = co_simulation::send(&mut core, &plan, &packets, Pacing::BackToBack)?;
             Ok((outcome.cycles, start.elapsed().as_secs_f64()))
         };
-        let (_, seconds) = run(TRIAL_FRAMES)?;
-        let wanted = TRIAL_FRAMES as f64 * ENOUGH.as_secs_f64() / seconds.max(1e-6);
-        let frames = (wanted as usize).clamp(TRIAL_FRAMES, MOST_FRAMES);
+        let (_, seconds) = run(FIRST_FRAMES)?;
+        let wanted = FIRST_FRAMES as f64 * ENOUGH.as_secs_f64() / seconds.max(1e-6);
+        let frames = (wanted as usize).clamp(FIRST_FRAMES, MOST_FRAMES);
         let mut rates = Vec::new();
         let mut cycles = 0;
         for _ in 0..REPETITIONS {

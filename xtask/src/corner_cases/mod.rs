@@ -45,7 +45,7 @@ pub struct Scope {
 pub fn table(scope: Scope, progress: &Progress) -> Result<Vec<Row>, CornerCasesError> {
     let mut cases: Vec<Case> = cases::all(scope.large)?;
     cases.extend(cases::by_joint(&cases)?);
-    progress.counted_in("cases", "hard cases", cases.len() as u64);
+    progress.counted_in("cases", "corner cases", cases.len() as u64);
     let mut rows: Vec<Row> = cases
         .par_iter()
         .map(|case| {

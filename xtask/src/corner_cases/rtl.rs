@@ -41,15 +41,15 @@ pub fn check(cases: &[Case], progress: &Progress) -> Result<Vec<Option<bool>>, C
 
 fn of_design(plan: &Plan, cases: &[&Case]) -> Result<Vec<bool>, CoSimulationError> {
     let frames: Vec<Vec<f64>> = cases.iter().flat_map(|case| &case.frames).cloned().collect();
-    let trial = CoSimulation::new(plan, packets(plan.streams(), &frames), SEED);
-    let Verdict { simulation, timing, .. } = trial.run()?;
+    let run = CoSimulation::new(plan, packets(plan.streams(), &frames), SEED);
+    let Verdict { simulation, timing, .. } = run.run()?;
     let mut first = 0;
     let free: Vec<bool> = cases
         .iter()
         .map(|case| {
             let frames = first..first + case.frames.len();
             first = frames.end;
-            simulation.answers.get(frames.clone()) == Some(&trial.expected[frames])
+            simulation.answers.get(frames.clone()) == Some(&run.expected[frames])
         })
         .collect();
     // A difference that only another mode has is not known by case: it counts against all of them.

@@ -208,9 +208,9 @@ fn without_tension(stress: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..half).zip([0.5, 0.6, 0.7, 0.8, 0.9, 1.0]).map(mixed).collect()
 }
 
-/// What every mutant goes through: the trial that every design goes through, then stress.
+/// What every mutant goes through: the co-simulation that every design goes through, then stress.
 struct Ordeal<'a> {
-    trial: CoSimulation<'a>,
+    simulation: CoSimulation<'a>,
     sources: &'a RtlSources,
     /// Of the sources.
     translation: String,
@@ -226,8 +226,8 @@ impl<'a> Ordeal<'a> {
         let frames = frames.as_delivered(&plan.design);
         let cache = tempfile::tempdir().map_err(MutantsError::Folder)?;
         let translation = translation(sources).map_err(CoSimulationError::from)?;
-        let trial = CoSimulation::new(plan, packets(plan.streams(), &frames.stress), options.seed as u32);
-        Ok(Self { trial, sources, translation, options, cache })
+        let simulation = CoSimulation::new(plan, packets(plan.streams(), &frames.stress), options.seed as u32);
+        Ok(Self { simulation, sources, translation, options, cache })
     }
 
     fn fate(&self, mutation: &Mutation) -> Fate {
@@ -253,7 +253,7 @@ impl<'a> Ordeal<'a> {
     /// What is wrong with a design; nothing if it passes.
     fn complaint(&self, sources: &RtlSources) -> Result<Option<String>, BuildError> {
         let built = Verilate::new(self.cache.path()).build(sources)?;
-        let judged = self.trial.simulate(&built, None, &|| ()).map_err(|error| error.to_string());
+        let judged = self.simulation.simulate(&built, None, &|| ()).map_err(|error| error.to_string());
         let passed = judged.and_then(|verdict| verdict.right().map_err(|fault| fault.to_string()));
         let stressed = passed.and_then(|_| (0..STRESS_BATCHES).try_for_each(|batch| self.stress(&built, batch)));
         Ok(stressed.err())
@@ -261,7 +261,7 @@ impl<'a> Ordeal<'a> {
 
     fn stress(&self, built: &Built, batch: u64) -> Result<(), String> {
         let core = built.load((self.options.seed ^ batch) as u32).map_err(|error| error.to_string())?;
-        run_batch(self.trial.plan, core, batch, BATCH, self.options.seed, &|| ())
+        run_batch(self.simulation.plan, core, batch, BATCH, self.options.seed, &|| ())
             .map(drop)
             .map_err(|error| error.to_string())
     }

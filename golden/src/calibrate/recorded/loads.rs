@@ -15,8 +15,8 @@ const APART: [f64; 2] = [2.0, 16.0];
 const PARTS: usize = 8;
 /// The same as [`APART`] in a part, where creep and curves let a wrong lag look better.
 const APART_IN_PART: [f64; 2] = [4.0; 2];
-/// A part tells something if its loads range over this share of the range of all.
-const TELLS: f64 = 0.5;
+/// A part counts if its loads range over this share of the range of all.
+const VARIES: f64 = 0.5;
 /// Parts on either side of missing frames that agree, at least,
 const AGREE: usize = 2;
 /// or the first or the last part alone, if its loads cross the middle so often: what ends within a touch looks late.
@@ -109,7 +109,7 @@ pub(super) fn pair<'a>(
     Ok((&frames[..both], measured, remarks))
 }
 
-/// Parts of a recording that tell something.
+/// Parts of a recording whose loads vary.
 struct Parts<'a> {
     loads: &'a [Option<f64>],
     length: usize,
@@ -123,7 +123,7 @@ impl<'a> Parts<'a> {
             let sorted = sorted(loads.iter().flatten().copied());
             sorted.last().zip(sorted.first()).map_or(0.0, |(most, least)| most - least)
         };
-        let (length, least) = (readings.len() / PARTS, TELLS * range(loads));
+        let (length, least) = (readings.len() / PARTS, VARIES * range(loads));
         let part = |begin: usize| {
             let loads = &loads[begin..][..length];
             let lags = (range(loads) >= least).then(|| Lags::of(&readings[begin..][..length], loads, APART_IN_PART));

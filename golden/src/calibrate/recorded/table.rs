@@ -86,7 +86,7 @@ impl Measured {
         let common = frames.iter().filter(|time| (begin..=end).contains(*time)).count();
         if (common as f64) < COMMON * frames.len() as f64 {
             return Err(format!(
-                "the frames' times go from {} to {} s, the forces' from {begin} to {end} s: give both the same clock and a unit \
+                "the frames' times go from {} to {} s, the other file's from {begin} to {end} s: give both the same clock and a unit \
                  in the header, or leave the columns of times out",
                 frames[0],
                 frames[frames.len() - 1]
@@ -118,7 +118,7 @@ impl Measured {
             lines.iter().map(|line| line.map_or(String::new(), |line| names[nearest(line)].clone())).collect()
         };
         let mut remarks = self.remarks.clone();
-        remarks.push("forces and frames are paired by their times".to_owned());
+        remarks.push("frames are paired by their times with what was measured".to_owned());
         Ok(Self {
             forces: (0..frames.len()).map(|frame| force.each_ref().map(|axis| axis[frame])).collect(),
             pressures: value(&|line| self.pressures[line]),

@@ -67,7 +67,7 @@ fn design(sensor: &Sensor, algorithm: &str) -> Result<Design, DesignError> {
         "{PLAIN_DESIGN}name = \"hard\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [{x:?}, {y:?}]\n\
          depth_mm = {depth_mm:?}\n[algorithm]\nplan = \"reduced\"\n{algorithm}\n"
     );
-    Design::from_toml(&text, "hard case")
+    Design::from_toml(&text, "corner case")
 }
 
 fn square(side: usize, depth_mm: f64) -> Sensor {
