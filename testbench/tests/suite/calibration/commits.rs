@@ -94,8 +94,9 @@ fn averages_go_on_over_a_commit() {
     let words = subject.calibration().words();
     let frames = 14 + (loaded(words) + 7 * words as u64) / interval;
     let packets: Vec<Vec<u32>> = (0..frames).map(|_| still.iter().map(&mut noisy).collect()).collect();
-    let [gains, _, floor] = others(&subject);
-    let cases: Vec<(&Bank, u64)> = [&gains, &floor]
+    let [gains, ..] = others(&subject);
+    let same = subject.calibration().power_up.clone();
+    let cases: Vec<(&Bank, u64)> = [&gains, &same]
         .into_iter()
         .flat_map(|bank| (0..interval).step_by(16).map(move |cycle| (bank, cycle)))
         .collect();
@@ -106,7 +107,8 @@ fn averages_go_on_over_a_commit() {
         for &write in writes {
             core.plan(10, write);
         }
-        core.plan(loaded(words) + cycle, *commit);
+        // When there is an average.
+        core.plan(loaded(words) + 8 * interval + cycle, *commit);
         let banks = [subject.calibration().power_up.clone(), bank.clone()];
         judged(&subject.plan, &mut core, &packets, &banks).map(|versions| versions.last().copied())
     });
