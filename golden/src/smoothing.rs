@@ -1,8 +1,8 @@
 //! Exponential moving average of each taxel over frames that follow each other.
 //!
-//! The average moves by `2^-k` of the difference to a new frame. Where any living taxel differs from its average by more than
-//! [`RESTART`] standard deviations of the noise, the frame itself is the new average of all taxels. In a steady state noise of
-//! standard deviation σ falls to `σ sqrt(2^-k / (2 - 2^-k))`.
+//! The average moves by `w = 2^-k` of the difference to a new frame. Where any living taxel differs from its average by more
+//! than [`RESTART`] standard deviations of the noise, the frame itself is the new average of all taxels. Of a frame's variance
+//! `v` is left: 1 then, `(1 - w)^2 v + w^2` a frame later, and `w / (2 - w)` in a steady state.
 
 use crate::numbers::magnitude;
 
@@ -20,6 +20,8 @@ pub fn noise_left(k: u32) -> f64 {
 pub struct Average {
     /// Empty before the first frame.
     stress: Vec<f64>,
+    /// Variance of the noise in it, over that of a frame.
+    variance: f64,
 }
 
 /// How frames are averaged.
@@ -35,9 +37,9 @@ impl Smoothing {
         Self { weight: 0.5_f64.powi(k as i32), limit: RESTART * noise }
     }
 
-    /// Takes a good frame into the average and puts the average in its place. Steps of `dead` taxels, whose noise is that of
-    /// the sum in their place, restart nothing.
-    pub fn take(&self, average: &mut Average, frame: &mut [f64], dead: &[usize]) {
+    /// Takes a good frame into the average and puts the average in its place; returns the noise that is left in it, over that
+    /// of a frame. Steps of `dead` taxels, whose noise is that of the sum in their place, restart nothing.
+    pub fn take(&self, average: &mut Average, frame: &mut [f64], dead: &[usize]) -> f64 {
         let limit = self.limit * magnitude(&*frame);
         let pairs = average.stress.iter().zip(&*frame).enumerate();
         let mut living = pairs.filter(|(taxel, _)| !dead.contains(taxel));
@@ -45,11 +47,14 @@ impl Smoothing {
         {
             average.stress.clear();
             average.stress.extend_from_slice(frame);
-            return;
+            average.variance = 1.0;
+            return 1.0;
         }
         for (average, stress) in average.stress.iter_mut().zip(frame) {
             *average += self.weight * (*stress - *average);
             *stress = *average;
         }
+        average.variance = (1.0 - self.weight).powi(2) * average.variance + self.weight.powi(2);
+        average.variance.sqrt()
     }
 }

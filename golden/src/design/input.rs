@@ -12,7 +12,6 @@ use super::hardware::Hardware;
 use super::keys::{DeadKey, SensorKeys};
 use super::rules;
 use crate::creep::Creep;
-use crate::smoothing::noise_left;
 use crate::words::print_as_words;
 
 /// Standard deviation of a reading's noise where a design names none, as a share of the frame's largest reading.
@@ -119,11 +118,6 @@ impl Input {
             Some(Calibration { gain, offset }) => (stress / pa_per_count - offset[taxel]) / gain[taxel],
             None => stress / pa_per_count,
         }
-    }
-
-    /// Standard deviation of the noise that is left in a steady average, as a share of the frame's largest reading.
-    pub fn averaged_noise(&self) -> f64 {
-        self.noise * noise_left(self.smoothing)
     }
 
     /// The input of the same sensor whose frames are in pascals, one by one: what gains and curve have made of counts.

@@ -16,6 +16,8 @@ pub struct Contact {
     /// Centroid of the compressed taxels minus that of the taxels in tension, in metres; its direction is the
     /// direction of push. `None` where no taxel reaches the noise floor on one of the two sides.
     pub direction: Option<[f64; 2]>,
+    /// Noise in the stress over that of a frame: below 1 where frames are averaged.
+    pub noise_left: f64,
 }
 
 /// What an estimator finds of a frame.

@@ -82,13 +82,13 @@ impl Confidence {
     /// That of a design, if its standard error was fitted.
     pub(crate) fn of(design: &Design) -> Option<Self> {
         let Algorithm { standard_error, max_standard_error: most, .. } = &design.algorithm;
-        let (noise, columns) = (design.input.averaged_noise(), design.sensor.columns);
+        let (noise, columns) = (design.input.noise, design.sensor.columns);
         standard_error.map(|of| Self { of, noise, columns, most: *most })
     }
 
-    /// The standard error over `|F_z|` of the stress `b`.
-    pub(crate) fn share(&self, b: &[f64]) -> f64 {
-        self.of.share(self.noise, Marks::of(b, self.columns))
+    /// The standard error over `|F_z|` of the stress `b`, in which this much is left of a frame's noise.
+    pub(crate) fn share(&self, b: &[f64], noise_left: f64) -> f64 {
+        self.of.share(self.noise * noise_left, Marks::of(b, self.columns))
     }
 }
 

@@ -8,7 +8,8 @@ pub use crate::estimators::Contact;
 ///
 /// Tension trails the push, so the vector from the centroid of tension to that of compression points along it
 /// (Pinto-Salamanca et al., Sensors 2024, Eq. 24, kept as a vector so that it has no poles). `noise_floor` in
-/// pascals decides whether there is a contact and a direction at all; the centroids take in every taxel.
+/// pascals decides whether there is a contact and a direction at all; the centroids take in every taxel. The stress is that of a
+/// single frame.
 pub fn cean(b: &DVector<f64>, positions: &[[f64; 2]], noise_floor: f64) -> Contact {
     let stress_sum: f64 = b.iter().map(|stress| stress.abs()).sum();
     let compressed = b.iter().any(|&stress| stress < -noise_floor);
@@ -18,7 +19,7 @@ pub fn cean(b: &DVector<f64>, positions: &[[f64; 2]], noise_floor: f64) -> Conta
         let t = centroid(b, positions, |stress| stress.max(0.0));
         [c[0] - t[0], c[1] - t[1]]
     });
-    Contact { stress_sum, touched: stress_sum >= b.len() as f64 * noise_floor, direction }
+    Contact { stress_sum, touched: stress_sum >= b.len() as f64 * noise_floor, direction, noise_left: 1.0 }
 }
 
 /// Mean position under a weight that is not zero everywhere.

@@ -150,7 +150,7 @@ impl Solution {
         if let Some(of) = confidence {
             // Without a direction the error is as much as presses.
             let unknown = status.contains(Status::DIRECTION_UNKNOWN);
-            let share = if unknown { 1.0 } else { of.share(inputs.b) };
+            let share = if unknown { 1.0 } else { of.share(inputs.b, inputs.contact.noise_left) };
             self.standard_error = share * fz.abs();
             if share > of.most {
                 self.status.insert(Status::LOW_CONFIDENCE);

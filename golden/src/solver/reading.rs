@@ -39,8 +39,8 @@ pub(crate) struct Reader {
 pub(crate) enum Given<'a> {
     /// Values as the sensor delivers them.
     Values(&'a [f64]),
-    /// What [`Reader::decode`] and [`Reader::follow`] have made of them.
-    Decoded(&'a [f64], Status),
+    /// What [`Reader::decode`] and [`Reader::follow`] have made of them, and the noise left in it.
+    Decoded(&'a [f64], Status, f64),
 }
 
 /// A frame as the solver takes it.
@@ -95,14 +95,14 @@ impl Reader {
 
     /// Reads a frame into `b` of length m.
     pub(crate) fn read(&self, frame: Given<'_>, b: &mut DVector<f64>) -> Result<Reading, SolverError> {
-        let status = match frame {
-            Given::Values(values) => self.decode(values, b.as_mut_slice())?,
-            Given::Decoded(stress, status) => {
+        let (status, noise_left) = match frame {
+            Given::Values(values) => (self.decode(values, b.as_mut_slice())?, 1.0),
+            Given::Decoded(stress, status, noise_left) => {
                 b.as_mut_slice().copy_from_slice(stress);
-                status
+                (status, noise_left)
             }
         };
-        Ok(self.judge(status, b))
+        Ok(self.judge(status, b, noise_left))
     }
 
     /// Converts a frame to pascals within the full scale, replaces dead taxels and removes crosstalk. Its status is
@@ -138,18 +138,16 @@ impl Reader {
         Ok(status)
     }
 
-    /// Takes the creep of its stream off a decoded frame, and puts the average in its place. A bad frame leaves both as they
-    /// were.
-    pub(crate) fn follow(&self, past: &mut Past, status: Status, b: &mut [f64]) {
+    /// Takes the creep of its stream off a decoded frame, and puts the average in its place; returns the noise that is left
+    /// of a frame's. A bad frame leaves all as it was.
+    pub(crate) fn follow(&self, past: &mut Past, status: Status, b: &mut [f64]) -> f64 {
         if status.contains(Status::NOT_FINITE) {
-            return;
+            return 1.0;
         }
         if let Some(creep) = &self.creep {
             creep.remove(&mut past.creep, b, self.full_scale);
         }
-        if let Some(smoothing) = &self.smoothing {
-            smoothing.take(&mut past.average, b, self.dead.taxels());
-        }
+        self.smoothing.map_or(1.0, |smoothing| smoothing.take(&mut past.average, b, self.dead.taxels()))
     }
 
     fn clamp(&self, b: &mut [f64]) {
@@ -158,12 +156,12 @@ impl Reader {
         }
     }
 
-    /// Analyses a decoded frame.
-    pub(crate) fn judge(&self, mut status: Status, b: &DVector<f64>) -> Reading {
+    /// Analyses a decoded frame, in which this much is left of a frame's noise.
+    pub(crate) fn judge(&self, mut status: Status, b: &DVector<f64>, noise_left: f64) -> Reading {
         if status.contains(Status::NOT_FINITE) {
             return Reading::Nothing(status);
         }
-        let contact = self.analyse(b);
+        let contact = Contact { noise_left, ..self.analyse(b) };
         if !contact.touched {
             return Reading::Nothing(Status::NO_CONTACT);
         }

@@ -45,6 +45,8 @@ struct Separation {
     index: usize,
     /// Bits that each of its contacts has.
     status: Status,
+    /// Of a frame's noise, left in it and in the frames of its contacts.
+    noise_left: f64,
     /// Its stress, in pascals.
     whole: DVector<f64>,
     found: Found,
@@ -77,11 +79,11 @@ impl Solver {
     /// not ask. A frame that has several is noted, to be separated.
     ///
     /// `solution` is that of the frame as one contact, at `index` among those solved together; `status` the frame's before
-    /// it was solved. The hardware counts by the same rule.
+    /// it was solved, and `noise_left` as of [`Contact`]. The hardware counts by the same rule.
     pub(super) fn count_contacts(
         &self,
         separations: &mut Separations,
-        (b, mut status): (&DVector<f64>, Status),
+        (b, mut status, noise_left): (&DVector<f64>, Status, f64),
         (index, solution): (usize, &mut Solution),
     ) -> Counted {
         let Some(finder) = &self.finder else { return Counted::default() };
@@ -114,6 +116,7 @@ impl Solver {
             }
             solution.reset(status, self.solved_length());
             (separation.index, separation.status) = (index, ContactForces::bits_of(status));
+            separation.noise_left = noise_left;
         }
         counted
     }
@@ -196,7 +199,7 @@ impl Solver {
         let Matrices { c31, c32, c33, .. } = &self.matrices;
         let orbits = self.matrices.orbits();
         let mut first = 0;
-        for Separation { whole, found, forces, status, .. } in &frames[..*used] {
+        for &Separation { ref whole, ref found, ref forces, status, noise_left, .. } in &frames[..*used] {
             let contacts = found.taxels.len();
             if parts.len() < first + contacts {
                 parts.resize_with(first + contacts, || (whole.clone(), Contact::default()));
@@ -227,8 +230,8 @@ impl Solver {
                 if !self.reader.reads_tension() {
                     part.apply(|stress| *stress = stress.min(0.0));
                 }
-                *contact = self.reader.analyse(part);
-                alone.reset(*status, self.solved_length());
+                *contact = Contact { noise_left, ..self.reader.analyse(part) };
+                alone.reset(status, self.solved_length());
             }
             first += contacts;
         }

@@ -39,14 +39,15 @@ pub struct Workspace {
 pub(super) struct Decoded {
     taxels: usize,
     stress: Vec<f64>,
-    statuses: Vec<Status>,
+    /// Of each frame its status, and the noise left in it.
+    marks: Vec<(Status, f64)>,
 }
 
 impl Decoded {
     /// The frames, to be solved.
     pub(super) fn given(&self) -> Vec<Given<'_>> {
-        let frames = self.stress.chunks(self.taxels).zip(&self.statuses);
-        frames.map(|(stress, &status)| Given::Decoded(stress, status)).collect()
+        let frames = self.stress.chunks(self.taxels).zip(&self.marks);
+        frames.map(|(stress, &(status, noise_left))| Given::Decoded(stress, status, noise_left)).collect()
     }
 }
 
@@ -100,8 +101,8 @@ impl Solver {
     ) -> Result<(), SolverError> {
         self.fit(workspace);
         let status = self.reader.decode(frame, workspace.b.as_mut_slice())?;
-        self.reader.follow(&mut workspace.past, status, workspace.b.as_mut_slice());
-        let reading = self.reader.judge(status, &workspace.b);
+        let noise_left = self.reader.follow(&mut workspace.past, status, workspace.b.as_mut_slice());
+        let reading = self.reader.judge(status, &workspace.b, noise_left);
         self.solve_reading(workspace, &reading, solution);
         Ok(())
     }
@@ -115,7 +116,8 @@ impl Solver {
                 self.solve_alone(workspace, contact, solution);
                 let mut separations = std::mem::take(&mut workspace.separations);
                 separations.clear();
-                counted = self.count_contacts(&mut separations, (&workspace.b, status), (0, solution));
+                counted =
+                    self.count_contacts(&mut separations, (&workspace.b, status, contact.noise_left), (0, solution));
                 self.separate(&mut separations, std::slice::from_mut(solution), |parts, solutions| {
                     for ((b, contact), solution) in parts.iter().zip(solutions) {
                         workspace.b.copy_from(b);
@@ -202,14 +204,14 @@ impl Solver {
         frames: impl Iterator<Item = &'a [f64]>,
     ) -> Result<Decoded, SolverError> {
         let taxels = self.taxels();
-        let mut decoded = Decoded { taxels, stress: Vec::new(), statuses: Vec::new() };
+        let mut decoded = Decoded { taxels, stress: Vec::new(), marks: Vec::new() };
         for frame in frames {
             let begin = decoded.stress.len();
             decoded.stress.resize(begin + taxels, 0.0);
             let stress = &mut decoded.stress[begin..];
             let status = self.reader.decode(frame, stress)?;
-            self.reader.follow(past, status, stress);
-            decoded.statuses.push(status);
+            let noise_left = self.reader.follow(past, status, stress);
+            decoded.marks.push((status, noise_left));
         }
         Ok(decoded)
     }
@@ -280,9 +282,10 @@ impl Solver {
                 counted.push(Counted::default());
                 // Its stress, and its status before it was solved, once more: they are kept of no frame.
                 if self.finder.is_some()
-                    && let Reading::Contact { status, .. } = self.reader.read(frame, b)?
+                    && let Reading::Contact { contact, status } = self.reader.read(frame, b)?
                 {
-                    counted[index] = self.count_contacts(separations, (b, status), (index, solution));
+                    let of_frame = (&*b, status, contact.noise_left);
+                    counted[index] = self.count_contacts(separations, of_frame, (index, solution));
                 }
             }
             self.separate(separations, solutions, |parts, solutions| {

@@ -43,6 +43,29 @@ fn noise_alone_hardly_ever_restarts() {
     }
 }
 
+/// Frame by frame after a restart, what the average says of its noise is what is found in 44 taxels of 500 streams.
+#[test]
+fn the_noise_left_is_known_from_the_restart_on() {
+    let mut random = ChaCha8Rng::seed_from_u64(9);
+    for k in [1, 2, 4] {
+        let smoothing = Smoothing::new(k, NOISE);
+        let (mut squares, mut said) = ([0.0; 12], [0.0; 12]);
+        for _ in 0..500 {
+            let mut average = Average::default();
+            for (squares, said) in squares.iter_mut().zip(&mut said) {
+                let mut frame = noisy(&mut random);
+                *said = smoothing.take(&mut average, &mut frame, &[]);
+                *squares += frame[..44].iter().map(|stress| stress * stress).sum::<f64>() / (500.0 * 44.0);
+            }
+        }
+        assert_eq!(said[0], 1.0);
+        for (n, (squares, said)) in squares.iter().zip(said).enumerate() {
+            let found = squares.sqrt() / NOISE;
+            assert!((found / said - 1.0).abs() < 0.03, "k = {k}, frame {n}: {found} {said}");
+        }
+    }
+}
+
 #[test]
 fn a_step_is_followed_at_once_or_within_its_frames() {
     for k in 1..=8 {
@@ -66,9 +89,12 @@ fn a_step_is_followed_at_once_or_within_its_frames() {
     }
 }
 
+/// All of it is noise.
+const ERROR: &str = "standard_error = { model = 0.001, noise = 10.0, border = 0.0 }\nmax_standard_error = 1.0";
+
 fn design(more: &str) -> Design {
     let text = format!(
-        "format = 3\nname = \"pad\"\n[algorithm]\nestimator = \"line\"\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\nnoise = 0.01\n{more}"
+        "format = 3\nname = \"pad\"\n[algorithm]\nestimator = \"line\"\n{ERROR}\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\nnoise = 0.01\n{more}"
     );
     Design::from_toml(&text, "pad.toml").unwrap()
 }
@@ -99,6 +125,7 @@ fn frames_are_averaged_alike_however_they_are_solved() {
     let decoded: Vec<Vec<f64>> =
         frames.iter().map(|frame| (0..30).map(|taxel| smooth.input.to_pa(taxel, frame[taxel])).collect()).collect();
     let (mut expected, mut average): (Vec<Solution>, Vec<f64>) = (Vec::new(), Vec::new());
+    let mut variance = 1.0;
     let mut crept = vec![0.0; 30];
     for (number, frame) in decoded.iter().enumerate() {
         if number == 9 {
@@ -111,16 +138,22 @@ fn frames_are_averaged_alike_however_they_are_solved() {
         crept.iter_mut().zip(&frame).for_each(|(crept, stress)| *crept += share * (0.1 * stress - *crept));
         if number % 20 == 0 {
             average.clone_from(&frame);
+            variance = 1.0;
         } else {
+            variance = (9.0 * variance + 1.0) / 16.0;
             average.iter_mut().zip(&frame).for_each(|(average, stress)| *average += (stress - *average) / 4.0);
         }
-        expected.push(without.solve(&average).unwrap());
+        let mut solution = without.solve(&average).unwrap();
+        solution.standard_error *= f64::sqrt(variance);
+        expected.push(solution);
     }
     let close = |found: &[Solution]| {
         for (n, (found, expected)) in found.iter().zip(&expected).enumerate() {
             assert_eq!(found.status, expected.status);
             let far = (0..3).map(|axis| (found.resultant[axis] - expected.resultant[axis]).abs()).fold(0.0, f64::max);
             assert!(far < 1e-9, "{n}: {far}");
+            let [found, expected] = [found, expected].map(|solution| solution.standard_error);
+            assert!((found - expected).abs() <= 1e-9 * expected, "{n}: {found} {expected}");
         }
     };
     close(&solver.solve_in_order(&frames).unwrap());

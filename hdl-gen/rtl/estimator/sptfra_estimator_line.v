@@ -31,6 +31,7 @@ module sptfra_estimator_line #(
     parameter [17:0] ERROR_MODEL = 18'd0,
     parameter [16:0] ERROR_NOISE = 17'd0,
     parameter [16:0] ERROR_BORDER = 17'd0,
+    parameter integer ERROR_AVERAGED = 0,
     // From the direction to the line, checked in simulation; 0: unchecked
     parameter integer EXPECTED_LINE_LATENCY = 0,
     // From the start of a search to its end, checked in simulation; 0: unchecked
@@ -59,6 +60,7 @@ module sptfra_estimator_line #(
     input  wire [39:0] stress_sum,
     input  wire [26:0] largest,
     input  wire [39:0] border,
+    input  wire [24:0] variance,
     input  wire [5:0] flags_in, // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
     // One cycle: the place of a frame's u_q is free
     output wire u_released,
@@ -111,6 +113,7 @@ module sptfra_estimator_line #(
     reg [39:0] line_stress_sum;
     reg [26:0] line_largest;
     reg [39:0] line_border;
+    reg [24:0] line_variance;
     reg [5:0] line_flags;
 
     always @(posedge clock) begin
@@ -118,6 +121,7 @@ module sptfra_estimator_line #(
             line_stress_sum <= stress_sum;
             line_largest <= largest;
             line_border <= border;
+            line_variance <= variance;
             line_flags <= flags_in;
         end
     end
@@ -231,9 +235,10 @@ module sptfra_estimator_line #(
             wire signed [17:0] found_error;
 
             sptfra_standard_error #(
-                .MODEL  (ERROR_MODEL),
-                .NOISE  (ERROR_NOISE),
-                .BORDER (ERROR_BORDER)
+                .MODEL    (ERROR_MODEL),
+                .NOISE    (ERROR_NOISE),
+                .BORDER   (ERROR_BORDER),
+                .AVERAGED (ERROR_AVERAGED)
             ) standard_error (
                 .clock      (clock),
                 .reset      (reset),
@@ -241,6 +246,7 @@ module sptfra_estimator_line #(
                 .stress_sum (line_stress_sum),
                 .largest    (line_largest),
                 .border     (line_border),
+                .variance   (line_variance),
                 .error_log  (found_error)
             );
 
@@ -248,7 +254,8 @@ module sptfra_estimator_line #(
         end else begin : gen_no_error
             assign error_log = 18'sd0;
 
-            wire _unused = &{1'b0, line_largest, line_border, ERROR_MODEL, ERROR_NOISE, ERROR_BORDER};
+            wire _unused = &{1'b0, line_largest, line_border, line_variance, ERROR_MODEL, ERROR_NOISE, ERROR_BORDER,
+                ERROR_AVERAGED != 0};
         end
     endgenerate
 

@@ -3,9 +3,10 @@
 //
 // Standard error of the tangential force over |F_z|, as a logarithm: model, noise and border, added as squares.
 //
-// s = |MODEL, NOISE largest / stress_sum, BORDER e|. e is the share of the stress at the grid's border beyond 1/32.
+// s = |MODEL, NOISE left largest / stress_sum, BORDER e|. e is the share of stress at the grid's border beyond 1/32.
 // |x, y| is max(x, y, 7/8 of the larger + 1/2 of the smaller). No multiplier: each bit of a quotient adds its weight.
-// Latency: 54 cycles from start to the result, which holds until the next start.
+// The noise left is the root of the variance; its bits, as they are found, add up NOISE. Without averages it is 1.
+// Latency: 55 cycles from start to the result, which holds until the next start.
 
 `default_nettype none
 
@@ -14,7 +15,9 @@ module sptfra_standard_error #(
     parameter [17:0] MODEL = 18'd0,
     // Errors by noise and by stress at the border, as the header multiplies them, with 13 fraction bits
     parameter [16:0] NOISE = 17'd0,
-    parameter [16:0] BORDER = 17'd0
+    parameter [16:0] BORDER = 17'd0,
+    // 1: frames are averaged
+    parameter AVERAGED = 0
 ) (
     input  wire clock,
     input  wire reset,
@@ -22,25 +25,26 @@ module sptfra_standard_error #(
     input  wire [39:0] stress_sum, // sum |b|
     input  wire [26:0] largest, // max |b|
     input  wire [39:0] border, // sum |b| of the taxels at the border
+    input  wire [24:0] variance, // of the noise left in an average, 24 fraction bits
     output reg  signed [17:0] error_log // of base 2, from -10 to 2, 12 fraction bits: n + f for 2^n (1 + f)
 );
 
-    localparam [5:0] NOISE_END = 6'd16, BORDER_END = 6'd33, ADD = 6'd34, CLIP = 6'd40, LAST = 6'd52;
+    localparam [5:0] BORDER_END = 6'd17, NOISE_END = 6'd34, ADD = 6'd35, CLIP = 6'd41, LAST = 6'd53;
     localparam [17:0] LEAST = 18'd64; // 2^-10
     localparam [22:0] MOST = 23'd262143; // just below 4
 
     reg busy;
     reg [5:0] step;
-    // ---- Two quotients, a bit a cycle: remainder, and the sum of the weights
+    // ---- Two quotients, the border's first, a bit a cycle: remainder, and the sum of the weights
     reg [39:0] divisor;
-    reg [39:0] excess;
     reg [40:0] remainder;
+    reg [26:0] peak;
+    wire [16:0] noise; // its weight in this frame
     reg [33:0] sum;
-    wire of_border = (step > NOISE_END);
     wire [41:0] less = {1'b0, remainder} - {2'b00, divisor};
     wire fits = !less[41];
     wire [40:0] kept = fits ? less[40:0] : remainder;
-    wire [16:0] weight = of_border ? BORDER : NOISE;
+    wire [16:0] weight = (step > BORDER_END) ? noise : BORDER;
     wire [33:0] next_sum = {sum[32:0], 1'b0} + (fits ? {17'd0, weight} : 34'd0);
     wire [39:0] allowed = {5'd0, divisor[39:5]};
 
@@ -63,24 +67,24 @@ module sptfra_standard_error #(
             busy <= 1'b1;
             step <= 6'd0;
             divisor <= stress_sum;
-            excess <= border;
-            remainder <= {14'd0, largest};
-            sum <= 34'd0;
+            peak <= largest;
+            remainder <= {1'b0, border};
             total <= {5'd0, MODEL};
         end else if (busy) begin
             step <= step + 6'd1;
             remainder <= {kept[39:0], 1'b0};
             sum <= next_sum;
             if (step == 6'd0) begin
-                excess <= (excess > allowed) ? excess - allowed : 40'd0;
-            end
-            if (step == NOISE_END) begin
-                share_noise <= {2'd0, next_sum[33:13]};
+                remainder <= (remainder[39:0] > allowed) ? remainder - {1'b0, allowed} : 41'd0;
                 sum <= 34'd0;
-                remainder <= {1'b0, excess};
             end
             if (step == BORDER_END) begin
                 share_border <= {2'd0, next_sum[33:13]};
+                sum <= 34'd0;
+                remainder <= {14'd0, peak};
+            end
+            if (step == NOISE_END) begin
+                share_noise <= {2'd0, next_sum[33:13]};
             end
             if ((step == ADD) || (step == ADD + 6'd3)) begin
                 larger <= is_larger ? total : other;
@@ -106,6 +110,39 @@ module sptfra_standard_error #(
             busy <= 1'b0;
         end
     end
+
+    // ---- Root of the variance, two bits of it a cycle, and its product with NOISE
+    generate
+        if (AVERAGED != 0) begin : gen_averaged
+            reg [25:0] radicand; // what is left of it
+            reg [12:0] root;
+            reg [14:0] rest;
+            reg [29:0] product;
+            wire [16:0] trial = {rest, radicand[25:24]} - {2'b00, root, 2'b01};
+            wire bit_there = !trial[16];
+
+            assign noise = product[28:12];
+
+            always @(posedge clock) begin
+                if (start) begin
+                    radicand <= {1'b0, variance};
+                    root <= 13'd0;
+                    rest <= 15'd0;
+                    product <= 30'd0;
+                end else if (step < 6'd13) begin
+                    radicand <= {radicand[23:0], 2'b00};
+                    root <= {root[11:0], bit_there};
+                    rest <= bit_there ? trial[14:0] : {rest[12:0], radicand[25:24]};
+                    product <= {product[28:0], 1'b0} + (bit_there ? {13'd0, NOISE} : 30'd0);
+                end
+            end
+
+            wire _unused_averaged = &{1'b0, trial[15], product[29], product[11:0]};
+        end else begin : gen_alone
+            assign noise = NOISE;
+            wire _unused_variance = &{1'b0, variance};
+        end
+    endgenerate
 
     wire _unused = &{1'b0, mantissa[4:0], kept[40], sum[33], smaller[0]};
 

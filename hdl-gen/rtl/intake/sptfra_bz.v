@@ -19,7 +19,7 @@ module sptfra_bz #(
     parameter CHANNELS = 4,
     parameter DATA_BITS = 27,
     parameter SCALED = 0,
-    // As of sptfra_samples
+    // As of sptfra_samples; the last two as of sptfra_banks
     parameter NUMBER_SHIFT = 9,
     parameter [26:0] NUMBER_BOUND = 27'd51200000,
     parameter SAMPLE = 0,
@@ -35,7 +35,6 @@ module sptfra_bz #(
     parameter CURVE_LEVELS = 0,
     parameter [27*(1<<CURVE_LEVELS)-1:0] CURVE_KNOTS = {27*(1<<CURVE_LEVELS){1'b1}},
     parameter signed [26:0] CURVE_LAST = 27'sd33554431,
-    // As of sptfra_banks
     parameter [6:0] CURVE_COUNT = 7'd1,
     parameter signed [26:0] CURVE_LAST_VALUE = 27'sd0,
     // Dead taxels: see sptfra_replace; with MAPPED the others are the content of the banks at power-up
@@ -90,6 +89,7 @@ module sptfra_bz #(
     // The frame's power of two, for one cycle, before it is ready
     output wire scaled,
     output wire [4:0] exponent,
+    output wire [25:0] smoothed, // {one cycle, variance}: see sptfra_smoothing
     // Banks
     output wire frame_ready, // a whole frame waits
     input  wire frame_start, // the lanes begin with it
@@ -347,6 +347,7 @@ module sptfra_bz #(
         .frame_replaced   (frame_replaced),
         .scaled           (scaled),
         .exponent         (exponent),
+        .smoothed         (smoothed),
         .frame_opens      (opens),
         .frame_ready      (frame_ready),
         .frame_start      (frame_start),

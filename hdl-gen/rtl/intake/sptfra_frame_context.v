@@ -12,6 +12,7 @@
 // | contact, noise     | when calibration begins | CeAn              |
 // | version, replaced  | when calibration begins | output            |
 // | exponent           | when the scale is found | estimator, output |
+// | variance           | when it is averaged     | estimator         |
 //
 // The timestamp counts cycles, modulo 2^32: 0 is the first cycle after the core's reset. A register resets this module
 // a cycle later. Outputs are valid in the same cycle; the thresholds pass a register.
@@ -24,7 +25,9 @@ module sptfra_frame_context #(
     // 1: contexts hold thresholds, version and replaced taxels of a calibration
     parameter CALIBRATED = 0,
     // 1: contexts hold an exponent
-    parameter SCALED = 0
+    parameter SCALED = 0,
+    // 1: contexts hold the variance of the noise left in an average
+    parameter AVERAGED = 0
 ) (
     input  wire clock,
     input  wire reset,
@@ -41,6 +44,8 @@ module sptfra_frame_context #(
     // A frame's scale is found
     input  wire scaled,
     input  wire [4:0] in_exponent,
+    // A frame is averaged: {one cycle, variance}
+    input  wire [25:0] smoothed,
     // CeAn: thresholds of the frame whose stress comes next or is coming
     input  wire cean_take,
     output wire [31:0] contact,
@@ -48,6 +53,7 @@ module sptfra_frame_context #(
     // Estimator: of the frame whose direction it takes next
     input  wire direction_take,
     output wire [4:0] direction_exponent,
+    output wire [24:0] direction_variance,
     // Output: of the oldest frame
     input  wire take,
     output wire [31:0] timestamp,
@@ -161,6 +167,25 @@ module sptfra_frame_context #(
             assign direction_exponent = 5'd0;
             assign exponent = 5'd0;
             wire _unused_scale = &{1'b0, scaled, in_exponent, direction_take};
+        end
+    endgenerate
+
+    // ---- Noise left
+    generate
+        if (AVERAGED != 0) begin : gen_variance
+            sptfra_context_field #(
+                .WIDTH (25)
+            ) for_direction (
+                .clock      (clock),
+                .reset      (reset),
+                .write      (smoothed[25]),
+                .write_data (smoothed[24:0]),
+                .take       (direction_take),
+                .oldest     (direction_variance)
+            );
+        end else begin : gen_frames_alone
+            assign direction_variance = 25'd0;
+            wire _unused_variance = &{1'b0, smoothed, direction_take};
         end
     endgenerate
 

@@ -75,6 +75,7 @@ module sptfra_frame_writer #(
     // The frame's power of two, for one cycle, before it is ready
     output wire scaled,
     output wire [4:0] exponent,
+    output wire [25:0] smoothed, // {one cycle, variance}: see sptfra_smoothing
     // Banks
     input  wire frame_opens, // a frame begins to come in
     output wire frame_ready, // a whole frame waits
@@ -172,13 +173,16 @@ module sptfra_frame_writer #(
                 .out_flags      ({saturated, not_finite, replaced}),
                 .decided        (settled),
                 .averaged       (averaged),
-                .over           (over)
+                .over           (over),
+                .known          (smoothed[25]),
+                .variance       (smoothed[24:0])
             );
         end else begin : gen_as_they_come
             assign {takes, ends, bad_length_now, replaced}
                 = {corrected_takes, corrected_ends, corrected_bad_length, corrected_replaced};
             assign {stresses, saturated, not_finite} = {corrected, corrected_saturated, corrected_not_finite};
             assign {smoothing_busy, settled, averaged} = {1'b0, ended, 1'b0};
+            assign smoothed = 26'd0;
             wire _unused_smoothing = &{1'b0, smoothing};
         end
     endgenerate

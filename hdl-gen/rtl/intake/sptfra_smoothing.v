@@ -6,6 +6,8 @@
 // Latency: 4 cycles from a beat to its stresses and their new averages. `decided` rises one cycle after `out_ends`,
 // later by the logarithm of the samples. From then on `averaged` says whether the frame is averaged, or restarts the
 // average. Averages are double-buffered: a frame writes the spare bank, and a good frame swaps the banks.
+//
+// Two cycles later comes the variance of the noise left: v is 1 at first, then (1 - w)^2 v + w^2 with the weight w.
 
 `default_nettype none
 
@@ -40,7 +42,10 @@ module sptfra_smoothing #(
     // Which of them the frame is made of
     output reg  decided, // until over
     output reg  averaged,
-    input  wire over // all is made of the frame
+    input  wire over, // all is made of the frame
+    // For each frame, one cycle
+    output wire known,
+    output reg  [24:0] variance // of the noise left, over that of a frame, 24 fraction bits
 );
 
     localparam BEATS = (TAXELS + SAMPLES - 1) / SAMPLES;
@@ -170,6 +175,31 @@ module sptfra_smoothing #(
         .low         (product_low),
         .high        (product_high)
     );
+
+    // ---- Variance of the noise left: twice it loses a share
+    localparam [24:0] ONE = 25'd16777216;
+    reg [2:0] settles;
+    reg is_good; // the frame is of the average
+    reg [3:0] taken_rate; // 0: it restarts it
+    reg [24:0] lessened;
+
+    assign known = settles[2];
+
+    always @(posedge clock) begin
+        settles <= {settles[1:0], ends[SETTLES]};
+        if (ends[SETTLES]) begin
+            is_good <= !is_bad && !is_bad_length;
+            taken_rate <= restarts ? 4'd0 : rate_held;
+        end
+        lessened <= variance - (variance >> taken_rate);
+        if (settles[1] && is_good) begin
+            variance <= lessened - (lessened >> taken_rate) + (ONE >> {taken_rate, 1'b0});
+        end
+        if (reset) begin
+            settles <= 3'd0;
+            variance <= ONE;
+        end
+    end
 
     always @(posedge clock) begin
         if (opens) begin

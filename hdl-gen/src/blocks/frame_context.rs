@@ -5,8 +5,12 @@ use crate::plan::Plan;
 
 /// The instance's parameters: which fields contexts hold beside the timestamp.
 pub fn parameters(plan: &Plan) -> Parameters {
-    let fields =
-        [("DROPS", plan.streams().drops), ("CALIBRATED", plan.calibration.is_some()), ("SCALED", plan.scales_frames())];
+    let fields = [
+        ("DROPS", plan.streams().drops),
+        ("CALIBRATED", plan.calibration.is_some()),
+        ("SCALED", plan.scales_frames()),
+        ("AVERAGED", plan.thresholds.error.is_some_and(|error| error.averaged)),
+    ];
     let there = fields.into_iter().filter(|&(_, there)| there);
     there.fold(Parameters::new(), |parameters, (name, there)| parameters.flag(name, there))
 }

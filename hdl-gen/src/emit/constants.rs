@@ -7,6 +7,7 @@ use crate::cores::{Multiplier, cordic};
 use crate::estimators::{joint, line};
 use crate::format::FRICTION_FRACTION;
 use crate::model::{PULLING, inverse_gain};
+use crate::plan::smoothing::VARIANCE_FRACTION;
 use crate::plan::standard_error::SHARE_FRACTION;
 use crate::timing::latency::{
     STANDARD_ERROR, TAKE_TO_BUS, TAXEL_TO_CEAN, bus_to_sums, bus_to_taxels, bus_to_write, read_to_write,
@@ -31,7 +32,7 @@ fn constant(module: &str, name: &str) -> i64 {
 #[test]
 fn modules_and_model_have_the_same_constants() {
     let one = 1 << FRICTION_FRACTION;
-    let expected: [(&str, &str, i64); 30] = [
+    let expected: [(&str, &str, i64); 31] = [
         ("sptfra_taxel_stream", "READ_TO_STRESS", TAXEL_TO_CEAN as i64),
         ("sptfra_spmv_collector", "TAKE_TO_BUS", TAKE_TO_BUS as i64),
         ("sptfra_direction", "CENTROID_FRACTION", line::CENTROID_FRACTION.into()),
@@ -60,6 +61,7 @@ fn modules_and_model_have_the_same_constants() {
         ("sptfra_network", "UNIT_BITS", joint::UNIT_BITS.into()),
         ("sptfra_network", "LIMIT", joint::CORRECTION_LIMIT),
         ("sptfra_standard_error", "LAST", STANDARD_ERROR as i64 - 2),
+        ("sptfra_smoothing", "ONE", 1 << VARIANCE_FRACTION),
         ("sptfra_standard_error", "LEAST", 1 << (i64::from(SHARE_FRACTION) + i64::from(ERROR_RANGE[0]))),
         ("sptfra_standard_error", "MOST", (1 << (i64::from(SHARE_FRACTION) + i64::from(ERROR_RANGE[1]))) - 1),
     ];

@@ -170,7 +170,7 @@ impl<'plan> Model<'plan> {
     }
 
     fn answer(&mut self, counter: u32, stress: &[i64], saturated: bool) -> Vec<u32> {
-        let scaled = Scaled::new(self.plan, stress);
+        let scaled = Scaled::new(self.plan, stress, self.average.variance);
         let (mut words, summary) = match self.plan.formats.folded {
             None => self.execute(&integer::by_taxel(self.plan), counter, &scaled, saturated),
             Some(_) => self.execute(&integer::by_orbit(self.plan), counter, &scaled, saturated),
@@ -330,7 +330,7 @@ fn scalars(
     let mut is_uncertain = plan.thresholds.thin;
     if let Some(of) = &plan.thresholds.error {
         // Without a direction the error is as much as presses.
-        let log = if estimate.unknown { 0 } else { of.log(&contact) };
+        let log = if estimate.unknown { 0 } else { of.log(&contact, scaled.variance) };
         let (error, exponent) = summary.standard_error(log);
         put(words::STANDARD_ERROR, &[error], plan.formats.g.lsb - friction + exponent);
         is_uncertain |= log > of.limit;

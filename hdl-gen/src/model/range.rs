@@ -13,15 +13,17 @@ pub struct Scaled {
     pub stress: Vec<i64>,
     /// The power of two by which it is larger than what was read.
     pub exponent: u32,
+    /// Variance of the noise in it over that of a frame, as [`crate::plan::smoothing::Average`] has it.
+    pub variance: i64,
 }
 
 impl Scaled {
     /// Of what was read: as it is where all frames have the range of the full scale, else by the largest power of two that
     /// keeps it within that.
-    pub fn new(plan: &Plan, stress: &[i64]) -> Self {
+    pub fn new(plan: &Plan, stress: &[i64], variance: i64) -> Self {
         let (bound, largest) = (plan.formats.stress.bound, stress.iter().map(|stress| stress.abs()).max().unwrap_or(0));
         let exponent = if plan.scales_frames() && largest > 0 { (bound / largest).ilog2() } else { 0 };
-        Self { stress: stress.iter().map(|stress| stress << exponent).collect(), exponent }
+        Self { stress: stress.iter().map(|stress| stress << exponent).collect(), exponent, variance }
     }
 
     /// Gives an answer's forces, torques and standard error the range of what was read.

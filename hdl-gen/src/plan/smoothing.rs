@@ -13,6 +13,8 @@ pub const MOST_RATE: u32 = 8;
 const FRACTION: u32 = 9;
 /// Added to each average: cut to the step of the stress, it is rounded.
 const HALF: i64 = 1 << (FRACTION - 1);
+/// Fraction bits of the variance of the noise left.
+pub const VARIANCE_FRACTION: u32 = 24;
 /// Bits that the memory keeps of a taxel: its stress, its average.
 pub const WORD_BITS: u32 = LONG_BITS + LONG_BITS + FRACTION;
 
@@ -25,9 +27,20 @@ pub struct SmoothingPlan {
     pub restart: Factor,
 }
 
-/// The average of the frames so far, or none before the first.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Average(Vec<i64>);
+/// The average of the frames so far.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Average {
+    /// None before the first.
+    stress: Vec<i64>,
+    /// Variance of the noise in it, over that of a frame, [`VARIANCE_FRACTION`] fraction bits.
+    pub variance: i64,
+}
+
+impl Default for Average {
+    fn default() -> Self {
+        Self { stress: Vec::new(), variance: 1 << VARIANCE_FRACTION }
+    }
+}
 
 impl SmoothingPlan {
     /// That of a design, if it averages frames.
@@ -39,7 +52,7 @@ impl SmoothingPlan {
     /// Takes a good frame into the average, with the weight `2^-rate`, and puts the average in its place. Steps of `replaced`
     /// taxels restart nothing.
     pub fn take(&self, rate: u32, average: &mut Average, stress: &mut [i64], replaced: &[usize]) {
-        let Average(average) = average;
+        let Average { stress: average, variance } = average;
         let most = stress.iter().fold(0, |most, stress| most.max(stress.abs()));
         let limit = self.restart.times(most);
         let exact = |stress: i64| (stress << FRACTION) + HALF;
@@ -49,12 +62,15 @@ impl SmoothingPlan {
         };
         if average.len() != stress.len() || average.iter().zip(&*stress).enumerate().any(is_far) {
             *average = stress.iter().copied().map(exact).collect();
+            *variance = 1 << VARIANCE_FRACTION;
             return;
         }
         for (average, stress) in average.iter_mut().zip(stress) {
             *average += ((((exact(*stress) - *average) * 2) >> rate) + 1) >> 1;
             *stress = *average >> FRACTION;
         }
+        let lessened = *variance - (*variance >> rate);
+        *variance = lessened - (lessened >> rate) + ((1 << VARIANCE_FRACTION) >> (2 * rate));
     }
 }
 
@@ -93,7 +109,7 @@ mod tests {
                 for (taxel, [least, most]) in range.iter_mut().enumerate() {
                     (*least, *most) = ((*least).min(frame[taxel]), (*most).max(frame[taxel]));
                     prop_assert!((*least..=*most).contains(&stress[taxel]));
-                    prop_assert!(average.0[taxel].unsigned_abs() < 1 << (LONG_BITS + FRACTION - 1));
+                    prop_assert!(average.stress[taxel].unsigned_abs() < 1 << (LONG_BITS + FRACTION - 1));
                 }
             }
         }

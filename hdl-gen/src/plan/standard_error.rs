@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::estimators::Contact;
 use crate::format::{largest, pow2};
 use crate::parameters::Parameters;
+use crate::plan::smoothing::VARIANCE_FRACTION;
 
 /// Fraction bits of an error over `|F_z|`.
 pub const SHARE_FRACTION: u32 = 16;
@@ -26,10 +27,12 @@ const _: () = assert!(BORDER == 1.0 / (1 << BORDER_SHIFT) as f64);
 pub struct StandardErrorPlan {
     /// The error of the model, [`SHARE_FRACTION`] fraction bits.
     pub model: i64,
-    /// Weight of `max|b| / sum|b|` at the design's noise, [`WEIGHT_FRACTION`] fraction bits.
+    /// Weight of `max|b| / sum|b|` at the design's noise in a frame, [`WEIGHT_FRACTION`] fraction bits.
     pub noise: i64,
     /// Weight of the border's share, likewise.
     pub border: i64,
+    /// Whether frames are averaged.
+    pub averaged: bool,
     /// A frame with a larger logarithm has low confidence, [`ERROR_FRACTION`] fraction bits.
     pub limit: i64,
 }
@@ -43,8 +46,9 @@ impl StandardErrorPlan {
         };
         standard_error.map(|of| Self {
             model: fixed(of.model, SHARE_FRACTION, SHARE_BITS),
-            noise: fixed(of.noise * design.input.averaged_noise(), WEIGHT_FRACTION, WEIGHT_BITS),
+            noise: fixed(of.noise * design.input.noise, WEIGHT_FRACTION, WEIGHT_BITS),
             border: fixed(of.border, WEIGHT_FRACTION, WEIGHT_BITS),
+            averaged: design.input.smoothing > 0,
             limit: (error_log(*max_standard_error) * pow2(ERROR_FRACTION as i32)).round() as i64,
         })
     }
@@ -53,16 +57,19 @@ impl StandardErrorPlan {
     pub fn parameters(&self, parameters: Parameters) -> Parameters {
         parameters
             .flag("WITH_ERROR", true)
+            .flag("ERROR_AVERAGED", self.averaged)
             .unsigned("ERROR_MODEL", SHARE_BITS, self.model as u64)
             .unsigned("ERROR_NOISE", WEIGHT_BITS, self.noise as u64)
             .unsigned("ERROR_BORDER", WEIGHT_BITS, self.border as u64)
     }
 
-    /// The logarithm of base 2 of the error over `|F_z|`, [`ERROR_FRACTION`] fraction bits.
-    pub fn log(&self, contact: &Contact) -> i64 {
+    /// The logarithm of base 2 of the error over `|F_z|`, [`ERROR_FRACTION`] fraction bits, where this variance is left of a
+    /// frame's noise, [`VARIANCE_FRACTION`] fraction bits.
+    pub fn log(&self, contact: &Contact, variance: i64) -> i64 {
         let sum = contact.stress_sum;
         let excess = (contact.border - (sum >> BORDER_SHIFT)).max(0);
-        let noise = weighed(contact.largest, sum, self.noise);
+        let weight = (self.noise * variance.isqrt()) >> (VARIANCE_FRACTION / 2);
+        let noise = weighed(contact.largest, sum, weight);
         let total = added(added(self.model, noise), weighed(excess, sum, self.border));
         let share = total.clamp(LEAST, largest(SHARE_BITS + 1));
         let whole = i64::from(share.ilog2()) - i64::from(SHARE_FRACTION);

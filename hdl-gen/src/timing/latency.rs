@@ -141,4 +141,4 @@ pub const OUTPUT_TO_IDLE: u64 = 4;
 
 // ---- The estimator
 /// From a start to the result of `sptfra_standard_error`, which begins with the search.
-pub const STANDARD_ERROR: u64 = 54;
+pub const STANDARD_ERROR: u64 = 55;

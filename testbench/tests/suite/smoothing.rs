@@ -6,6 +6,7 @@ use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simu
 use golden::creep::Creep;
 use golden::dead_taxels::DeadTaxels;
 use golden::design::{Design, Outputs, Overrun, PlanKind, Samples, Scaling};
+use golden::estimators::StandardError;
 use golden::scene::normal;
 use golden::solver::{Solution, Solver};
 use hdl_gen::model::{BAD_LENGTH, Model, NOT_FINITE};
@@ -23,6 +24,9 @@ const NOISE: f64 = 0.01;
 /// Within the frames of a contact it rises to most of what it adds.
 const CREEP: Creep = Creep { strength: 0.4, seconds: 0.03, frames_per_second: 100.0 };
 
+/// Most of it is noise.
+const ERROR: StandardError = StandardError { model: 0.002, noise: 30.0, border: 0.05 };
+
 /// Both plans and estimators, both scalings, smoothing, creep or both, dead taxels and crosstalk, integers, beats of several
 /// samples at once and one by one.
 fn designs() -> Vec<Design> {
@@ -32,6 +36,7 @@ fn designs() -> Vec<Design> {
         design.name = format!("smooth_{name}");
         design.hardware.scaling = scaling;
         (design.input.smoothing, design.input.noise) = (smoothing, NOISE);
+        design.algorithm.standard_error = Some(ERROR);
         design
     };
     let plain = small("plain", reduced, Outputs::Field, Scaling::PerFrame, 2);
@@ -43,6 +48,7 @@ fn designs() -> Vec<Design> {
     corrected.input.creep = Some(CREEP);
     let mut counts = with_joint(small("counts", reduced, Outputs::Field, Scaling::PerFrame, 3));
     "smooth_counts".clone_into(&mut counts.name);
+    counts.algorithm.standard_error = Some(ERROR);
     (counts.sensor.columns, counts.sensor.rows) = (3, 5);
     counts.input.pa_per_count = Some(-12.5);
     counts.hardware.samples = Samples::Int16;
@@ -265,6 +271,7 @@ fn the_model_averages_as_the_solver_does() {
             let plan = planned(model);
             let answers = model_answers(&plan, &sent).into_iter().filter_map(|words| decode(&words));
             let received = sent.iter().map(|packet| plan.streams().received(packet));
+            let input = &solver.input;
             let solver = Solver::new(&solver.solved_as_one()).expect("a solution");
             let solutions = solver.solve_in_order(received).expect("whole frames");
             let force = |solution: &Solution| solution.resultant[2].abs();
@@ -273,6 +280,11 @@ fn the_model_averages_as_the_solver_does() {
             let (answers, solutions): (Vec<Answer>, Vec<Solution>) =
                 answers.zip(solutions).filter(|(_, solution)| force(solution) > 0.02 * largest).unzip();
             assert!(2 * answers.len() > sent.len(), "{}: {} frames have a scale", plan.design.name, answers.len());
+            for (n, (answer, solution)) in answers.iter().zip(&solutions).enumerate() {
+                let apart = (answer.standard_error / solution.standard_error - 1.0).abs();
+                let differ = model.input != *input;
+                assert!(differ || apart < 0.02, "{}, frame {n}: {apart}", plan.design.name);
+            }
             SolverError::new(&answers, &solutions).resultant_max
         };
         let [smoothed, without, mixed] = [error(&design, &design), error(&alone, &alone), error(&alone, &design)];
@@ -317,6 +329,8 @@ fn faults_are_noticed() {
         ("localparam SETTLES = 4 + LEVELS;", "localparam SETTLES = 4;"),
         ("takes[1+LEVELS] && (magnitude > most)", "takes[1] && (magnitude > most)"),
         ("rate_held <= rate;", "rate_held <= 4'd1;"),
+        ("taken_rate <= restarts ? 4'd0 : rate_held;", "taken_rate <= rate_held;"),
+        ("if (settles[1] && is_good) begin", "if (settles[1]) begin"),
         ("$signed({stress_1[26], stress_1, 9'h100}) - old_1", "$signed({stress_1[26], stress_1, 9'h000}) - old_1"),
     ];
     let of_creep = [
@@ -334,7 +348,13 @@ fn faults_are_noticed() {
     // A beat with four samples, which may be no numbers.
     let [averages, creeps] = ["smooth_wide", "smooth_creeps"].map(designed);
     let [free, ..] = Mode::all(5);
+    let of_error = [
+        ("step < 6'd13", "step < 6'd12"),
+        ("radicand <= {1'b0, variance};", "radicand <= {1'b0, 25'd16777216};"),
+        ("product <= 30'd0;", "product <= product;"),
+    ];
     let faults = faults.map(|fault| (&averages, "sptfra_smoothing", fault)).into_iter();
+    let faults = faults.chain(of_error.map(|fault| (&averages, "sptfra_standard_error", fault)));
     let faults = faults.chain(of_creep.map(|fault| (&creeps, "sptfra_creep", fault)));
     let faults = some_faults(faults, |&(_, module, (from, _))| (module, from));
     let missed = in_parallel(&faults, |&(plan, module, (from, to))| {

@@ -105,6 +105,8 @@ module small_4x3 #(
     wire [3:0] replaced;
     wire frame_scaled;
     wire [4:0] frame_exponent, direction_exponent, exponent;
+    wire [25:0] frame_smoothed;
+    wire [24:0] direction_variance;
 
     sptfra_frame_context frame_context (
         .clock              (aclk),
@@ -119,11 +121,13 @@ module small_4x3 #(
         .in_replaced        (frame_calibration[3:0]),
         .scaled             (frame_scaled),
         .in_exponent        (frame_exponent),
+        .smoothed           (frame_smoothed),
         .cean_take          (cean_take),
         .contact            (contact),
         .noise              (noise),
         .direction_take     (direction_take),
         .direction_exponent (direction_exponent),
+        .direction_variance (direction_variance),
         .take               (context_take),
         .timestamp          (timestamp),
         .dropped            (context_dropped),
@@ -183,6 +187,7 @@ module small_4x3 #(
         .frame_replaced   (frame_replaced),
         .scaled           (frame_scaled),
         .exponent         (frame_exponent),
+        .smoothed         (frame_smoothed),
         .frame_ready      (frame_ready),
         .frame_start      (start[0]),
         .frame_release    (coefficients_complete),
@@ -500,6 +505,7 @@ module small_4x3 #(
         .stress_sum      (stress_sum),
         .largest         (largest),
         .border          (border),
+        .variance        (direction_variance),
         .flags_in        (frame_flags),
         .u_released      (u_released),
         .answer_valid    (answer_valid),
