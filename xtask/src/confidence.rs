@@ -20,15 +20,17 @@ const SEEDS: Range<u64> = 91_000..91_200;
 /// Parts of the frames sorted by standard error.
 const PARTS: usize = 5;
 
-/// A frame's error and standard error as shares of the normal force found, and whether it has low confidence.
+/// A frame's error and standard error as shares of the normal force found, whether it has low confidence, and the share of the
+/// taxels' normal forces that pull.
 struct Frame {
     error: f64,
     standard_error: f64,
     low: bool,
+    pulling: f64,
 }
 
 /// The columns of [`rows`].
-pub const COLUMNS: &str = "design,noise,kind,within_one,within_two,low,least,most";
+pub const COLUMNS: &str = "design,noise,kind,within_one,within_two,low,least,most,pulling";
 
 /// The table of some designs, which go by the names of their files.
 ///
@@ -53,7 +55,12 @@ pub fn rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
             inside.sort_by(|one, other| one.standard_error.total_cmp(&other.standard_error));
             let ratios: Vec<f64> = inside.chunks(inside.len().div_ceil(PARTS).max(1)).map(ratio).collect();
             let [least, most] = [f64::min, f64::max].map(|of| ratios.iter().copied().reduce(of).unwrap_or_default());
-            row(&mut text, &format!("{name},{percent},inside"), &inside, &format!("{least:.2},{most:.2}"));
+            row(
+                &mut text,
+                &format!("{name},{percent},inside"),
+                &inside,
+                &format!("{least:.2},{most:.2},{:.2}", by_pulling(&inside)),
+            );
         }
     }
     Ok(text)
@@ -67,7 +74,13 @@ fn frames(design: &Design, solver: &Solver, kind: Kind, percent: f64) -> Result<
         let [x, y] = [0, 1].map(|axis| solution.resultant[axis] - frame.force[axis]);
         let [error, standard_error] =
             [x.hypot(y), solution.standard_error].map(|newtons| newtons / solution.resultant[2].abs());
-        found.push(Frame { error, standard_error, low: solution.status.contains(Status::LOW_CONFIDENCE) });
+        let [mut pull, mut all] = [0.0, 0.0];
+        for &normal in &solution.field[2] {
+            pull += normal.max(0.0);
+            all += normal.abs();
+        }
+        let (low, pulling) = (solution.status.contains(Status::LOW_CONFIDENCE), pull / all);
+        found.push(Frame { error, standard_error, low, pulling });
     }
     Ok(found)
 }
@@ -79,12 +92,23 @@ fn ratio(frames: &[Frame]) -> f64 {
     square.sqrt() / (frames.iter().map(|frame| frame.standard_error).sum::<f64>() / count)
 }
 
+/// Correlation of the errors over their standard errors with the share of normal forces that pull.
+fn by_pulling(frames: &[Frame]) -> f64 {
+    let count = frames.len() as f64;
+    let pairs = || frames.iter().map(|frame| [frame.error / frame.standard_error, frame.pulling]);
+    let mean: [f64; 2] = [0, 1].map(|of| pairs().map(|pair| pair[of]).sum::<f64>() / count);
+    let product = |one: usize, other: usize| {
+        pairs().map(|pair| (pair[one] - mean[one]) * (pair[other] - mean[other])).sum::<f64>()
+    };
+    product(0, 1) / (product(0, 0) * product(1, 1)).sqrt()
+}
+
 fn row(text: &mut String, head: &str, frames: &[Frame], ratios: &str) {
     let share = |is: &dyn Fn(&Frame) -> bool| {
         100.0 * frames.iter().filter(|frame| is(frame)).count() as f64 / frames.len().max(1) as f64
     };
     let within = |errors: f64| share(&move |frame: &Frame| frame.error <= errors * frame.standard_error);
-    let ratios = if ratios.is_empty() { "," } else { ratios };
+    let ratios = if ratios.is_empty() { ",," } else { ratios };
     // Writing to a String cannot fail.
     let _ = writeln!(text, "{head},{:.0},{:.0},{:.0},{ratios}", within(1.0), within(2.0), share(&|frame| frame.low));
 }

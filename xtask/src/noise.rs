@@ -22,7 +22,7 @@ const SEEDS: Range<u64> = 90_000..90_200;
 const DRAWS: usize = 5;
 
 /// Noises of the table of smoothing.
-const SMOOTHED_PERCENT: [f64; 3] = [0.5, 1.0, 2.0];
+const SMOOTHED_PERCENT: [f64; 4] = [0.2, 0.5, 1.0, 2.0];
 /// Keys `smoothing` of it; 0: one frame.
 const SMOOTHING: RangeInclusive<u32> = 0..=8;
 /// Frames of a contact from the first one on: the average of the slowest has forgotten all but 1 % of it.
