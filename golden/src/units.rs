@@ -49,6 +49,28 @@ pub(crate) fn timestamp(text: &str) -> Option<f64> {
     ((1..=12).contains(&month) && (1..=31).contains(&day)).then_some((86_400 * days) as f64 + of_day(time)? - ahead)
 }
 
+/// The times of lines, of which few are unknown, NaN: between two that are known in equal steps. How many were unknown.
+/// Nothing where all are.
+///
+/// # Errors
+///
+/// The place of the first unknown one, if more than a tenth are, or it is the first or last.
+pub(crate) fn without_gaps(mut times: Vec<f64>) -> Result<Option<(Vec<f64>, usize)>, usize> {
+    let unknown: Vec<usize> = (0..times.len()).filter(|&line| !times[line].is_finite()).collect();
+    if unknown.len() == times.len() {
+        return Ok(None);
+    }
+    let is_end = |line: usize| line == 0 || line + 1 == times.len();
+    if let Some(first) = unknown.iter().find(|&&line| is_end(line) || 10 * unknown.len() > times.len()) {
+        return Err(*first);
+    }
+    for &line in &unknown {
+        let after = (line..times.len()).find(|&after| times[after].is_finite()).unwrap_or(line);
+        times[line] = times[line - 1] + (times[after] - times[line - 1]) / (after - line + 1) as f64;
+    }
+    Ok(Some((times, unknown.len())))
+}
+
 /// Pascals of a unit of pressure: one of its own, or a force on an area. Nothing for another unit.
 pub(crate) fn pascals(unit: &str) -> Option<f64> {
     force_or_pressure(unit).and_then(|(pascals, is_pressure)| is_pressure.then_some(pascals))

@@ -80,6 +80,8 @@ fn fit(
         Kind::Forces => fit_forces(&design.inner, &rows, &measured),
         Kind::Pressures => fit_uniform(&design.inner, &rows, &measured),
     })?;
+    let missing = found.refuse_missing(&measured);
+    missing.map_err(|problem| PyValueError::new_err(format!("{}: {problem}", design.inner.name)))?;
     let json = serde_json::to_string(&found).map_err(raised)?;
     let [_, title, unit] = kind.words();
     let page = page(&found.design, &[(title, unit, &found)]);

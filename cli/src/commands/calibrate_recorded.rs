@@ -24,8 +24,6 @@ use crate::message::{self, json_or, say};
 const ROUNDS: usize = 10;
 /// They end when readings without creep change by less than this share of the largest.
 const SETTLED: f64 = 1e-3;
-/// Median and worst error of loads, in percent, above which frames without times may be missing.
-const MISSING: [f64; 2] = [15.0, 100.0];
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
@@ -134,9 +132,10 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
         found.check().map_err(|problem| format!("{}: {problem}", weight.file.display()))?;
     }
     let (mut design, mut results) = fitted;
-    for (place, what) in ["the pressure", "F_z"].into_iter().enumerate() {
-        if let (Some(pressed), Some(found)) = (&given[place], &results[place]) {
-            pressed.refuse_missing(found, what)?;
+    for (pressed, found) in given.iter().zip(&results) {
+        if let (Some(pressed), Some(found)) = (pressed, found) {
+            let missing = found.refuse_missing(&pressed.measured);
+            missing.map_err(|problem| format!("{}: {problem}", pressed.file.display()))?;
         }
     }
     if let Some(found) = results.iter_mut().flatten().last().filter(|_| !settled) {
@@ -201,8 +200,6 @@ struct Pressed<'a> {
     /// Seconds from frame to frame, or why they are unknown; nothing without times.
     interval: Option<std::result::Result<f64, String>>,
     measured: Measured,
-    /// Whether both files have times.
-    has_times: bool,
     /// The frames without creep.
     freed: Vec<Vec<f64>>,
 }
@@ -224,23 +221,7 @@ impl<'a> Pressed<'a> {
         };
         let measured = table.map_err(|problem| format!("{}: {problem}", measured.display()))?;
         let interval = recording.times.as_ref().map(|_| creep::interval_of(&recording));
-        Ok(Some(Self { file, frames: recording.frames, interval, measured, has_times, freed: Vec::new() }))
-    }
-
-    /// Refuses large errors of what was paired line by line.
-    fn refuse_missing(&self, found: &Recorded, what: &str) -> std::result::Result<(), String> {
-        let Some(errors) = found.errors.as_ref().or(found.errors_fitted.as_ref()) else { return Ok(()) };
-        let [median, worst] = MISSING;
-        if self.has_times || errors.median <= median && errors.worst <= worst {
-            return Ok(());
-        }
-        Err(format!(
-            "{}: {what} errs by {:.0} % in the median, {:.0} % at worst; frames may be missing: give a column of times in both \
-             files, or cut them so that they begin together",
-            self.file.display(),
-            errors.median,
-            errors.worst
-        ))
+        Ok(Some(Self { file, frames: recording.frames, interval, measured, freed: Vec::new() }))
     }
 
     /// Takes creep off the frames as a design reads them; whether that changes what it was before.

@@ -153,7 +153,7 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
         found(kind, message);
         return findings;
     }
-    if let Some(message) = scaled::check(frames) {
+    if let Some(message) = scaled::check(&design.sensor, frames) {
         found(Kind::Scaled, message);
         return findings;
     }

@@ -1,53 +1,114 @@
-//! Frames that are each divided by their own largest reading, or sum.
+//! Frames that are each divided by a norm of their own: the largest reading, the sum, the root of the squares.
 
-use super::largest;
+use super::quiet::{TOGETHER, together};
+use super::{LOADED, largest};
+use crate::numbers::{magnitude, middle, rounded};
+use crate::sensor::Sensor;
 
 /// From so many frames on.
 const FRAMES: usize = 5;
 /// Whole readings below this share a largest one by chance.
 const COARSE: f64 = 100.0;
-/// Largest values that programs scale to.
-const USUAL: [f64; 6] = [1.0, 100.0, 255.0, 1000.0, 4095.0, 65535.0];
+/// Values that programs scale to, other than those of one digit.
+const USUAL: [f64; 5] = [255.0, 1023.0, 1024.0, 4095.0, 65535.0];
 /// The end of a converter is read by more taxels of a frame than this.
 const AT_MOST: usize = 2;
 /// Values are the same but for this share of them, and sums of printed ones but for that.
 const SAME: f64 = 1e-9;
 const PRINTED: f64 = 1e-4;
+/// Largest readings of one load differ by less than this factor, whatever the direction that it pushes in.
+const OTHER_SHAPE: f64 = 1.5;
+/// Readings below this share of the largest are far from the contact.
+const FAR: f64 = 0.1;
+/// Fewer taxels there tell no noise.
+const FEW: usize = 30;
+/// Noise of the readings makes norms differ by more than this share of it.
+const OF_NOISE: f64 = 0.1;
 
-/// A message where all frames, values as they are in the file, have the same largest reading or a sum of 1, and differ
-/// otherwise.
-pub(super) fn check(frames: &[Vec<f64>]) -> Option<String> {
-    let some: Vec<&Vec<f64>> = frames.iter().filter(|frame| largest(frame) > 0.0).collect();
-    let [peak, total] = [largest(some.first()?), sum(some[0])];
+/// A norm by its name, of one frame.
+type Norm = (&'static str, fn(&[f64]) -> f64);
+
+/// Norms other than the largest reading. Of contacts simulated without noise they may be the same.
+const NORMS: [Norm; 4] =
+    [("sum", sum), ("sum of magnitudes", magnitudes), ("root of the sum of squares", root), ("root mean square", rms)];
+
+/// A message where all frames, or all loaded ones, values as they are in the file, have the same norm and differ otherwise.
+pub(super) fn check(sensor: &Sensor, frames: &[Vec<f64>]) -> Option<String> {
+    let peak = frames.iter().map(|frame| largest(frame)).fold(0.0, f64::max);
+    let some = |share: f64| frames.iter().filter(|frame| largest(frame) > share * peak).collect::<Vec<_>>();
+    [0.0, LOADED].into_iter().find_map(|share| of_all(sensor, &some(share)))
+}
+
+fn of_all(sensor: &Sensor, some: &[&Vec<f64>]) -> Option<String> {
+    let first = *some.first()?;
+    let peak = largest(first);
     let whole = some.iter().all(|frame| frame.iter().all(|value| value.fract() == 0.0));
-    if some.len() < FRAMES || whole && peak < COARSE || some.iter().all(|frame| frame == &some[0]) {
+    if some.len() < FRAMES || whole && peak < COARSE || some.iter().all(|frame| *frame == first) {
         return None;
     }
-    let alike = |a: f64, b: f64, within: f64| (a - b).abs() <= within * a.abs();
-    let same = |of: fn(&[f64]) -> f64, within: f64| some.iter().all(|frame| alike(of(some[0]), of(frame), within));
+    let same = |of: fn(&[f64]) -> f64, within: f64| some.iter().all(|frame| alike(of(first), of(frame), within));
     let few = |of: fn(&[f64]) -> f64| {
         let at = |frame: &[f64]| frame.iter().filter(|value| alike(of(frame), value.abs(), SAME)).count();
         2 * some.iter().filter(|frame| at(frame) <= AT_MOST).count() > some.len()
     };
     // The peak of one contact that stays may be the same by symmetry.
     let at = |frame: &[f64]| frame.iter().position(|value| alike(peak, value.abs(), SAME));
-    let moves = some.iter().any(|frame| at(frame) != at(some[0]));
+    let moves = some.iter().any(|frame| at(frame) != at(first));
     // From 0 to 1, what does not press may be the 1.
-    let is_usual = USUAL.contains(&peak);
-    let is_one =
-        (moves || is_usual) && few(largest) || is_usual && least(some[0]) == 0.0 && same(least, SAME) && few(least);
+    let is_one = (moves || is_usual(peak)) && few(largest)
+        || is_usual(peak) && least(first) == 0.0 && same(least, SAME) && few(least);
     let (what, value) = if same(largest, SAME) && is_one {
         ("largest reading", peak)
-    } else if same(sum, PRINTED) && [1.0, 100.0].iter().any(|&usual| alike(usual, total, PRINTED)) {
-        ("sum", total)
     } else {
-        return None;
+        let same = |(_, of): &&Norm| same(*of, PRINTED) && (is_usual(of(first)) || is_made(sensor, some, *of));
+        let (what, of) = NORMS.iter().filter(same).min_by_key(|(_, of)| !alike(1.0, of(first), PRINTED))?;
+        (*what, of(first))
     };
+    let value = rounded(value, 6);
     Some(format!(
         "all {} frames have the same {what}, {value}: is each frame divided by its own? Its force is lost then; record the \
          readings as the sensor gives them, or scale all frames alike",
         some.len()
     ))
+}
+
+/// Whether a norm that is the same in all frames is so by division: their shapes differ as those of one load do not, or they
+/// have noise of which the norm has none.
+fn is_made(sensor: &Sensor, frames: &[&Vec<f64>], norm: fn(&[f64]) -> f64) -> bool {
+    let peaks = || frames.iter().map(|frame| largest(frame));
+    if peaks().fold(0.0, f64::max) > OTHER_SHAPE * peaks().fold(f64::INFINITY, f64::min) {
+        return true;
+    }
+    let is_far = |taxel: &usize| frames.iter().all(|frame| frame[*taxel].abs() < FAR * largest(frame));
+    let far: Vec<usize> = (0..sensor.taxels()).filter(is_far).collect();
+    if far.len() < FEW {
+        return false;
+    }
+    let steps = || frames.windows(2);
+    let step = |pair: &[&Vec<f64>]| {
+        let mut step = vec![0.0; pair[0].len()];
+        for &taxel in &far {
+            step[taxel] = pair[1][taxel] - pair[0][taxel];
+        }
+        step
+    };
+    // What a layer hands on from the contact has one sign on neighbours.
+    let signs =
+        |step: Vec<f64>| step.iter().map(|step| if *step == 0.0 { 0.0 } else { step.signum() }).collect::<Vec<_>>();
+    let is_noise = middle(steps().map(|pair| together(sensor, &signs(step(pair))))) < TOGETHER;
+    let noise = middle(steps().map(|pair| root(&step(pair)))) / (far.len() as f64).sqrt();
+    is_noise && magnitude(steps().map(|pair| norm(pair[1]) - norm(pair[0]))) < OF_NOISE * noise
+}
+
+/// Whether programs scale to this value: one of a single digit, or the end of whole numbers of some bits.
+fn is_usual(value: f64) -> bool {
+    let power = 10.0_f64.powf(value.log10().floor());
+    let digit = (value / power).round() * power;
+    USUAL.iter().chain(&[digit]).any(|&usual| alike(usual, value, PRINTED))
+}
+
+fn alike(a: f64, b: f64, within: f64) -> bool {
+    (a - b).abs() <= within * a.abs()
 }
 
 fn least(frame: &[f64]) -> f64 {
@@ -56,4 +117,16 @@ fn least(frame: &[f64]) -> f64 {
 
 fn sum(frame: &[f64]) -> f64 {
     frame.iter().sum::<f64>().abs()
+}
+
+fn magnitudes(frame: &[f64]) -> f64 {
+    frame.iter().map(|value| value.abs()).sum()
+}
+
+fn root(frame: &[f64]) -> f64 {
+    frame.iter().map(|value| value * value).sum::<f64>().sqrt()
+}
+
+fn rms(frame: &[f64]) -> f64 {
+    root(frame) / (frame.len() as f64).sqrt()
 }

@@ -94,11 +94,14 @@ impl Cells {
             separator::number(cell).is_some() || cell.starts_with(b"#") || is_unknown(&String::from_utf8_lossy(cell))
         };
         let width = self.width.unwrap_or(self.names.len());
-        separator != Separator::Spaces
-            && cells.len() > 1
-            && cells.len() == width
-            && no_number(cells[0])
-            && cells[1..].iter().all(is_cell)
+        // Without a width a first cell of any word may be a name behind a #.
+        let is_error = || cells[0].eq_ignore_ascii_case(b"N/A") || matches!(cells[0], [.., b'!' | b'?']);
+        let is_first = if width > 0 {
+            cells.len() == width && separator != Separator::Spaces && no_number(cells[0])
+        } else {
+            remark.first().is_some_and(u8::is_ascii_alphabetic) && is_error()
+        };
+        cells.len() > 1 && is_first && cells[1..].iter().all(is_cell)
     }
 
     /// Takes the line for one of the header. What separates its names may be another character than in the rows.

@@ -54,7 +54,18 @@ impl Header {
         let Some(values) = names.get(from.saturating_sub(1)..to).filter(|values| values.len() == taxels) else {
             return Ok(header);
         };
-        let order = order(values, &target.sensor);
+        let of = order(values, &target.sensor);
+        let order = match of {
+            Ok(None) => order(&indexed(values), &target.sensor),
+            of => of,
+        };
+        let order = order.map_err(|Open| {
+            format!(
+                "the names {}, {} have two numbers each, and on a square grid either may be that of the row: name the columns \
+                 r0c0, r0c1 and so on, or skip the header with --skip-lines {line} if the values stand row by row",
+                values[0], values[1]
+            )
+        })?;
         if order.is_none()
             && let Some(pair) = as_text(values)
         {
@@ -230,43 +241,93 @@ pub(super) fn ascends(row: &[f64]) -> bool {
     is_whole(row) && row.windows(2).all(|pair| pair[1] > pair[0])
 }
 
+/// Names with a colon between two numbers that stand for a row and a column: a letter and a number as `A1`, or digits side by
+/// side as `s12`. Others stay as they are.
+fn indexed(names: &[String]) -> Vec<String> {
+    let parts: Vec<(&str, &str)> = names.iter().map(|name| split(name).0).map(at_digits).collect();
+    let halves = |(before, digits): &(&str, &str)| {
+        let whole = (digits.len().is_multiple_of(2) && *before == parts[0].0 && digits.len() == parts[0].1.len())
+            .then(|| digits.split_at(digits.len() / 2))?;
+        (!digits.is_empty()).then(|| format!("{before}{}:{}", whole.0, whole.1))
+    };
+    let lettered = |(before, digits): &(&str, &str)| {
+        let letter = before.chars().last().filter(char::is_ascii_alphabetic)?;
+        let is_one = !digits.is_empty() && before.len() == parts[0].0.len();
+        let same = before[..before.len() - 1] == parts[0].0[..before.len() - 1];
+        (is_one && same)
+            .then(|| format!("{}{}:{digits}", &before[..before.len() - 1], u32::from(letter.to_ascii_lowercase()) - 97))
+    };
+    let are_letters = parts.iter().any(|(before, _)| *before != parts[0].0);
+    let all = if are_letters {
+        parts.iter().map(lettered).collect()
+    } else {
+        parts.iter().map(halves).collect::<Option<_>>()
+    };
+    all.unwrap_or_else(|| names.to_vec())
+}
+
+/// What stands before the digits at the end of a name, and these.
+fn at_digits(name: &str) -> (&str, &str) {
+    name.split_at(name.trim_end_matches(|c: char| c.is_ascii_digit()).len())
+}
+
+/// Two numbers in each name, of which either may be that of the row.
+struct Open;
+
 /// The taxel of each name by its number, or by its row and column; nothing where numbers do not say so.
-fn order(names: &[String], sensor: &Sensor) -> Option<Vec<usize>> {
+fn order(names: &[String], sensor: &Sensor) -> Result<Option<Vec<usize>>, Open> {
     let (columns, rows) = (sensor.columns, sensor.rows);
     let kind = kind_of(&names[0]);
     if names.iter().any(|name| kind_of(name) != kind) {
-        return None;
+        return Ok(None);
     }
     let numbers: Vec<Vec<usize>> = names.iter().map(|name| numbers_of(name)).collect();
     // Each of the numbers in a name that is not the same in all names, from 0.
     let mut parts: Vec<(String, Vec<usize>)> = Vec::new();
     for (part, before) in kind.split('#').enumerate().take(kind.matches('#').count()) {
-        let values = numbers.iter().map(|of| of.get(part).copied()).collect::<Option<Vec<usize>>>()?;
-        let least = *values.iter().min()?;
+        let Some(values) = numbers.iter().map(|of| of.get(part).copied()).collect::<Option<Vec<usize>>>() else {
+            return Ok(None);
+        };
+        let least = values.iter().copied().min().unwrap_or(0);
         if values.iter().any(|&value| value != least) {
             let word = before.rsplit(|c: char| !c.is_alphabetic()).find(|word| !word.is_empty()).unwrap_or_default();
             parts.push((word.to_lowercase(), values.iter().map(|value| value - least.min(1)).collect()));
         }
     }
-    let order: Vec<usize> = match parts.as_slice() {
-        [(_, only)] => only.clone(),
+    let mut is_open = false;
+    let order: Option<Vec<usize>> = match parts.as_slice() {
+        [(_, only)] => Some(only.clone()),
         [(first, a), (second, b)] => {
             let row_first = match [first.as_str(), second] {
                 ["r", "c"] | ["row", "col" | "column"] | ["y", "x"] | ["zeile", "spalte"] => true,
                 ["c", "r"] | ["col" | "column", "row"] | ["x", "y"] | ["spalte", "zeile"] => false,
-                _ if columns == rows => return None,
-                _ => b.iter().max().is_some_and(|&most| most + 1 == columns),
+                _ => {
+                    is_open = columns == rows;
+                    b.iter().max().is_some_and(|&most| most + 1 == columns)
+                }
             };
             let (row, column) = if row_first { (a, b) } else { (b, a) };
             let place =
                 |(&row, &column): (&usize, &usize)| (row < rows && column < columns).then_some(row * columns + column);
-            row.iter().zip(column).map(place).collect::<Option<_>>()?
+            row.iter().zip(column).map(place).collect()
         }
-        _ => return None,
+        _ => None,
     };
-    let mut sorted = order.clone();
-    sorted.sort_unstable();
-    sorted.into_iter().eq(0..names.len()).then_some(order)
+    let is_each = |order: &Vec<usize>| {
+        let mut sorted = order.clone();
+        sorted.sort_unstable();
+        sorted.into_iter().eq(0..names.len())
+    };
+    match order.filter(is_each) {
+        Some(order) if is_open => {
+            if order.is_sorted() {
+                Ok(None)
+            } else {
+                Err(Open)
+            }
+        }
+        order => Ok(order),
+    }
 }
 
 /// Two names of which the second has the smaller number, where all names are sorted as text.

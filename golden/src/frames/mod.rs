@@ -33,6 +33,7 @@ use crate::design::Design;
 use crate::numbers::counted;
 use crate::output;
 use crate::sensor::Sensor;
+use crate::units::without_gaps;
 
 /// A column of times before the values.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -100,7 +101,7 @@ impl Frames {
 ///
 /// [`FrameError`], with file, line and column, for the first line that is no frame, and for a `.npy` file of another shape.
 pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -> Result<Frames, FrameError> {
-    let Text { rows: frames, lines, labels, header, times, skipped, remarks } =
+    let Text { rows: frames, lines, labels, header, times, skipped, mut remarks } =
         read_text(path, &layout.into(), &design.into())?;
     if frames.is_empty() {
         return Err(if remarks.is_empty() {
@@ -113,9 +114,19 @@ pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -
     let wrong = |values: &Vec<f64>| values.iter().position(|&value| !samples.takes(value));
     let found = frames.iter().enumerate().find_map(|(frame, values)| Some((frame, wrong(values)?)));
     let Some((frame, column)) = found else {
+        let times = match without_gaps(times) {
+            Err(place) if header.time.is_some() => {
+                let (line, problem) = (lines[place], NO_TIME.to_owned());
+                return Err(FrameError::Shape { path: path.to_path_buf(), line, problem });
+            }
+            times => times.unwrap_or_default(),
+        };
+        let times = times.filter(|(times, _)| times.len() == frames.len());
+        if let Some((_, unknown)) = times.as_ref().filter(|(_, unknown)| *unknown > 0) {
+            remarks.push(format!("{}: {}", path.display(), between(*unknown)));
+        }
+        let times = times.map(|(times, _)| times);
         let remark = (!remarks.is_empty()).then(|| remarks.join("; "));
-        let has_times = times.len() == frames.len() && times.iter().all(|time| time.is_finite());
-        let times = has_times.then_some(times);
         return Ok(Frames { frames, times, clock: header.clock, skipped, remark });
     };
     let place = match lines.get(frame) {
@@ -123,6 +134,14 @@ pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -
         None => format!("[{frame}, {}]", labels + column),
     };
     Err(FrameError::Sample { path: path.to_path_buf(), place, value: frames[frame][column], samples })
+}
+
+/// Of a line without a time, where others have one.
+pub(crate) const NO_TIME: &str = "the time is no number, and others are: fill it in, or take the line out of the file";
+
+/// What is to be said of so many lines without a time.
+pub(crate) fn between(lines: usize) -> String {
+    format!("{} without a time: it is taken from those around", counted(lines, "line"))
 }
 
 /// The frames of a file with their lines.

@@ -8,8 +8,11 @@ use super::layout::{Layout, Target};
 use super::{FrameError, blocks, hints, is_number};
 use crate::geometry;
 use crate::numbers::{counted, magnitude};
-use crate::separator::{self, Separator, no_number};
+use crate::separator::{self, Separator, is_unknown, no_number};
 use crate::units::{pascals, timestamp};
+
+/// Lines of means, deviations and the like at most.
+const SUMMARIES: usize = 8;
 
 /// Rows of a file with their lines, and what is to be said of it.
 #[derive(Clone, Debug, Default)]
@@ -334,8 +337,10 @@ pub(super) fn read(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
         let separator = lines.cells.separator.unwrap_or(Separator::Spaces);
         let fields = separator.split(separator.trim(line));
         let time = lines.time(fields.get(..lines.labels()).unwrap_or_default());
-        let is_number = fields.first().is_some_and(|label| separator::number(label).is_some());
-        labels.push(lines.labels() == 0 || is_number || time.is_some());
+        // What is not there is no word.
+        let is_word =
+            fields.first().is_some_and(|label| no_number(label) && !is_unknown(&String::from_utf8_lossy(label)));
+        labels.push(lines.labels() == 0 || !is_word || time.is_some());
         text.times.push(time.unwrap_or(f64::NAN));
         text.rows.push(row);
         text.lines.push(lines.cells.number);
@@ -351,6 +356,29 @@ pub(super) fn read(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
         text.lines.retain(|_| of_lines.next() == Some(true));
         text.times.retain(|_| of_times.next() == Some(true));
     }
+    drop_summaries(&mut lines, &mut text, &labels);
     lines.end(&mut text)?;
     Ok(text)
+}
+
+/// Takes off lines at the end with a word as their label where all others have a number: mean, deviation and the like.
+fn drop_summaries(lines: &mut Lines, text: &mut Text, labels: &[bool]) {
+    let frames = labels.iter().rposition(|is_number| *is_number).map_or(0, |last| last + 1);
+    let summaries = labels.len() - frames;
+    if labels.len() > text.rows.len()
+        || summaries == 0
+        || frames < 2
+        || summaries > SUMMARIES.min(frames)
+        || labels[..frames].contains(&false)
+    {
+        return;
+    }
+    lines.cells.number = text.lines[frames];
+    lines.remark(&format!(
+        "a word where other lines have a number: {} at the end left out, such as a mean; give frames a number",
+        counted(summaries, "line")
+    ));
+    text.rows.truncate(frames);
+    text.lines.truncate(frames);
+    text.times.truncate(frames);
 }

@@ -408,6 +408,7 @@ fn frames_that_are_each_scaled_by_their_own_peak() {
         |frame: &[f64]| [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| frame.iter().copied().fold(0.0, pick));
     let clipped = |frame: &[f64]| [ends(frame)[0], ends(frame)[0].mul_add(0.2, 0.0)];
     let sum = |frame: &[f64]| frame.iter().sum::<f64>();
+    let root = |frame: &[f64]| frame.iter().map(|pa| pa * pa).sum::<f64>().sqrt();
     for (frames, same) in [
         (scaled(&|frame| [0.0, peak(frame)]), "largest reading, 1"),
         (scaled(&|frame| [0.0, peak(frame) / 255.0]), "largest reading, 255"),
@@ -415,6 +416,10 @@ fn frames_that_are_each_scaled_by_their_own_peak() {
         (changed(&scaled(&clipped), |share| share.min(1.0)), "largest reading, 1"),
         (changed(&scaled(&|frame| [0.0, sum(frame)]), |share| (1e6 * share).round() / 1e6), "sum, "),
         (scaled(&|frame| [0.0, -0.01 * sum(frame)]), "sum, "),
+        (scaled(&|frame| [0.0, sum(frame) / 1234.5]), "sum, 1234.5"),
+        (scaled(&|frame| [0.0, root(frame)]), "root of the sum of squares, 1"),
+        (scaled(&|frame| [0.0, root(frame) / 77.7]), "root of the sum of squares, 77.7"),
+        (scaled(&|frame| [0.0, root(frame) / (frame.len() as f64).sqrt()]), "root mean square, 1"),
     ] {
         let words = [&format!("all 36 frames have the same {same}"), "Its force is lost", "scale all frames alike"];
         found(&design, &frames, &[Kind::Scaled], &words);

@@ -3,6 +3,7 @@
 use super::fit::{Validated, Work};
 use super::folds::{Folds, levels};
 use super::gains::Evidence;
+use super::loads::Follow;
 use super::report::{Errors, Hold, Recorded, TaxelGain};
 use super::rows::Rows;
 use super::shape::Kind;
@@ -35,9 +36,11 @@ const APART: f64 = 0.03;
 /// [`RecordedError::Recording`] for frames and forces that do not belong together or tell nothing at all.
 pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> Result<Recorded, RecordedError> {
     let wrong = |wrong| RecordedError::of(design, wrong);
-    let (frames, measured, mut remarks) = loads::pair(design, frames, measured, false).map_err(wrong)?;
+    let is_sideways = sideways::is_all(measured);
+    let follow = if is_sideways { Follow::Sideways(sideways::found(design, frames)?) } else { Follow::Forces };
+    let (frames, measured, mut remarks) = loads::pair(design, frames, measured, &follow).map_err(wrong)?;
     remarks.splice(0..0, measured.remarks.iter().cloned());
-    if sideways::is_all(&measured) {
+    if is_sideways {
         return sideways::fit(design, frames, measured, remarks);
     }
     let mut holds = holds::part(design, frames, &measured).map_err(wrong)?;

@@ -11,11 +11,16 @@ const HALF: f64 = 0.5;
 /// A share of the variance that rounding alone leaves.
 const ROUNDING: f64 = 1e-6;
 /// Fewer frames tell no lag.
-const FRAMES: usize = 40;
+pub(super) const FRAMES: usize = 40;
 /// Lags of more than this share of the frames are not looked at.
 const SHARE: usize = 4;
 /// Products at most.
 const WORK: usize = 20_000_000;
+
+/// Places that are tried for what one log lacks,
+const PLACES: usize = 64;
+/// and the share of the variance that it leaves of what its ends do.
+const CLEARLY: f64 = 0.25;
 
 /// What each lag leaves unexplained of the readings' variance.
 pub(super) struct Lags {
@@ -70,6 +75,11 @@ impl Lags {
         self.best_of(self.around(self.zero()))
     }
 
+    /// The best lag, where 0 explains less than half of what the best one does not leave.
+    pub(super) fn far_better(&self) -> Option<isize> {
+        self.best().ok().filter(|lag| *lag != 0 && self.left[self.zero()] > HALF)
+    }
+
     /// By how many frames the loads come late, 0 where that is as good as any.
     ///
     /// # Errors
@@ -93,6 +103,20 @@ fn unexplained(readings: &[f64], loads: &[Option<f64>], lag: isize) -> f64 {
     let lines = loads.iter().skip(skip(lag));
     let pairs = readings.iter().skip(skip(-lag)).zip(lines).filter_map(|(&reading, load)| Some((reading, (*load)?)));
     1.0 - correlation(pairs).powi(2)
+}
+
+/// About where one of two logs of other lengths lacks entries: which place explains clearly more than its ends.
+pub(super) fn lost(readings: &[f64], loads: &[Option<f64>]) -> Option<usize> {
+    let (count, lines) = (readings.len(), loads.len());
+    let (both, lost) = (count.min(lines), count.abs_diff(lines));
+    let left = |place: usize| {
+        let later = |at: usize, is_whole: bool| if at < place || !is_whole { at } else { at + lost };
+        let pair = move |at: usize| Some((readings[later(at, count > lines)], loads[later(at, lines > count)]?));
+        1.0 - correlation((0..both).filter_map(pair)).powi(2)
+    };
+    let places = (1..PLACES).map(|place| place * both / PLACES);
+    let best = places.min_by(|&a, &b| left(a).total_cmp(&left(b)))?;
+    (left(best) <= (1.0 - EXPLAINS).min(CLEARLY * left(both).min(left(0)))).then_some(best)
 }
 
 #[cfg(test)]

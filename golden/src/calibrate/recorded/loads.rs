@@ -1,6 +1,6 @@
 //! What pressed in each frame, what the taxels read without load, and where the converter ends.
 
-use super::lag::Lags;
+use super::lag::{self, Lags};
 use super::table::{Measured, Pairing};
 use crate::design::Design;
 use crate::numbers::{counted, magnitude, middle, sorted};
@@ -28,15 +28,43 @@ pub(super) type Wrong = (String, String);
 /// Frames, what was measured with each, and what is to be known of it.
 pub(super) type Pairs<'a> = (&'a [Vec<f64>], Measured, Vec<String>);
 
+/// What the frames are compared with to pair them.
+pub(super) enum Follow {
+    /// Their sum with `F_z`.
+    Forces,
+    /// Their sum with the pressures.
+    Pressures,
+    /// What the design finds along x and y, with what was measured.
+    Sideways(Vec<[f64; 2]>),
+}
+
+impl Follow {
+    /// What the frames read, and what was measured.
+    fn logs(&self, design: &Design, frames: &[Vec<f64>], measured: &Measured) -> (Vec<f64>, Vec<Option<f64>>) {
+        let is_alive = |(taxel, _): &(usize, &f64)| !design.input.dead.contains(taxel);
+        let sum = |frame: &Vec<f64>| frame.iter().enumerate().filter(is_alive).map(|(_, value)| value).sum();
+        let along = |axis: usize| measured.forces.iter().map(|force| force[axis]).collect::<Vec<_>>();
+        let largest = |axis: usize| magnitude(along(axis).iter().flatten());
+        match self {
+            Self::Forces => (frames.iter().map(sum).collect(), along(2)),
+            Self::Pressures => (frames.iter().map(sum).collect(), measured.pressures.clone()),
+            Self::Sideways(found) => {
+                let axis = usize::from(largest(1) > largest(0));
+                (found.iter().map(|found| found[axis]).collect(), along(axis))
+            }
+        }
+    }
+}
+
 /// Frames and lines of the forces, or of a bladder's pressures, one for one. Where they do not begin together, the lag is
 /// found.
 pub(super) fn pair<'a>(
     design: &Design,
     frames: &'a [Vec<f64>],
     measured: &Measured,
-    is_bladder: bool,
+    follow: &Follow,
 ) -> Result<Pairs<'a>, Wrong> {
-    let what = if is_bladder { "pressures" } else { "forces" };
+    let what = if matches!(follow, Follow::Pressures) { "pressures" } else { "forces" };
     let (count, lines) = (frames.len(), measured.forces.len());
     let apart = count.abs_diff(lines);
     if apart as f64 > LENGTHS * count as f64 {
@@ -45,11 +73,7 @@ pub(super) fn pair<'a>(
             "give one line for each frame; leave blank what is unknown".to_owned(),
         ));
     }
-    let is_alive = |(taxel, _): &(usize, &f64)| !design.input.dead.contains(taxel);
-    let sum = |frame: &Vec<f64>| frame.iter().enumerate().filter(is_alive).map(|(_, value)| value).sum();
-    let readings: Vec<f64> = frames.iter().map(sum).collect();
-    let loads: Vec<Option<f64>> =
-        if is_bladder { measured.pressures.clone() } else { measured.forces.iter().map(|force| force[2]).collect() };
+    let (readings, loads) = follow.logs(design, frames, measured);
     let (clock, remedy) = match measured.pairing {
         Pairing::Lines => {
             (false, "give both files a column of times, or cut them so that both begin with the same touch")
@@ -59,31 +83,62 @@ pub(super) fn pair<'a>(
     let unclear = |why: String| {
         (format!("frames and loads do not begin together, or frames are missing: {why}"), remedy.to_owned())
     };
-    // One clock says what belongs together, whatever fits better.
-    let lags = (measured.pairing != Pairing::Clock).then(|| Lags::of(&readings, &loads, APART)).flatten();
+    let mut lags = Lags::of(&readings, &loads, APART);
+    // Nor are forces along the surface those that the design finds, if no lag fits.
+    let is_sideways = matches!(follow, Follow::Sideways(_)) && count >= lag::FRAMES;
+    if lags.is_none() {
+        match measured.pairing {
+            Pairing::Apart => {
+                return Err(unclear("their clocks differ, and no lag explains what the frames read".to_owned()));
+            }
+            Pairing::Lines if is_sideways => {
+                return Err(unclear(
+                    "no F_z is known, and the F_x and F_y that the design finds do not follow them".to_owned(),
+                ));
+            }
+            _ => {}
+        }
+    }
+    // One clock says what belongs together, whatever fits better, unless it does not fit at all.
+    if measured.pairing == Pairing::Clock
+        && let Some(lag) = lags.take().and_then(|lags| lags.far_better())
+    {
+        return Err(unclear(format!(
+            "by their times they do not fit, and {} would: do their clocks differ?",
+            together(lag)
+        )));
+    }
     // Nor do files of one length begin far apart.
-    let around_zero = lags.as_ref().filter(|_| clock || apart == 0).and_then(Lags::best_around_zero);
+    let is_near = apart == 0 && measured.pairing != Pairing::Apart;
+    let around_zero = lags.as_ref().filter(|_| is_near).and_then(Lags::best_around_zero);
     let lag = match (lags.map_or(Ok(0), |lags| lags.best()), around_zero) {
         (Ok(lag), _) | (Err(_), Some(lag)) => lag,
         (Err([one, other]), None) => {
             return Err(unclear(format!("{} fits the loads nearly as well as {}", together(other), together(one))));
         }
     };
-    let skip = |frames: isize| usize::try_from(frames).unwrap_or(0);
-    let (frames, from) = (&frames[skip(-lag)..], skip(lag));
-    let both = frames.len().min(lines - from);
-    let parts = Parts::of(&readings[skip(-lag)..][..both], &loads[from..][..both]);
-    if let Some((place, count)) = parts.missing().filter(|_| !clock) {
+    let lost = |place: usize, count: isize| {
         let lost = match count {
             1 => "1 frame is".to_owned(),
             -1 => format!("1 line of {what} is"),
             2.. => format!("{count} frames are"),
             _ => format!("{} lines of {what} are", -count),
         };
-        return Err((
-            format!("about frame {}, {lost} missing", skip(-lag) + place + 1),
-            "give both files a column of times, or cut them there".to_owned(),
-        ));
+        let problem = format!("about frame {place}, {lost} missing");
+        Err((problem, "give both files a column of times, or cut them there".to_owned()))
+    };
+    if apart > 0
+        && (lag == 0 || lag.unsigned_abs() == apart)
+        && let Some(place) = lag::lost(&readings, &loads)
+    {
+        return lost(place + 1, lines as isize - count as isize);
+    }
+    let skip = |frames: isize| usize::try_from(frames).unwrap_or(0);
+    let (frames, from) = (&frames[skip(-lag)..], skip(lag));
+    let both = frames.len().min(lines - from);
+    let parts = Parts::of(&readings[skip(-lag)..][..both], &loads[from..][..both]);
+    if let Some((place, count)) = parts.missing().filter(|_| !clock) {
+        return lost(skip(-lag) + place + 1, count);
     }
     if lag != 0 && parts.most_differ() {
         return Err(unclear(format!("{} fits best, but not most parts of the recording", together(lag))));
@@ -266,7 +321,7 @@ mod tests {
                     pitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\npa_per_count = -2.0\n";
         let design = Design::from_toml(text, "pad.toml").unwrap();
         let frames: Vec<Vec<f64>> = readings.iter().map(|&reading| vec![reading; 4]).collect();
-        pair(&design, &frames, measured, false).map(|(_, _, remarks)| remarks)
+        pair(&design, &frames, measured, &Follow::Forces).map(|(_, _, remarks)| remarks)
     }
 
     /// Between -1 and 1.

@@ -9,8 +9,12 @@ use super::folds::Folds;
 use super::friction::Verdict;
 use super::gains::Prior;
 use super::shape::{Kind, Shape};
+use super::table::{Measured, Pairing};
 use crate::design::{Curve, Design};
 use crate::numbers::{middle, sorted};
+
+/// Median and worst error of loads, in percent, above which frames without times may be missing.
+const MISSING: [f64; 2] = [15.0, 100.0];
 
 /// Constants from a recording, and how good they are.
 #[derive(Clone, Debug, Serialize)]
@@ -42,6 +46,29 @@ pub struct Recorded {
     pub gains: Vec<TaxelGain>,
     /// Counts above rest and the pascals that they mean.
     pub points: Vec<[f64; 2]>,
+}
+
+impl Recorded {
+    /// Refuses large errors of what was paired line by line.
+    ///
+    /// # Errors
+    ///
+    /// How large they are, and what may be wrong.
+    pub fn refuse_missing(&self, measured: &Measured) -> Result<(), String> {
+        let Some(errors) = self.errors.as_ref().or(self.errors_fitted.as_ref()) else { return Ok(()) };
+        let [median, worst] = MISSING;
+        if measured.pairing != Pairing::Lines || errors.median <= median && errors.worst <= worst {
+            return Ok(());
+        }
+        let is_pressure = measured.forces.iter().flatten().all(Option::is_none);
+        Err(format!(
+            "{} errs by {:.0} % in the median, {:.0} % at worst; frames may be missing: give a column of times in both \
+             files, or cut them so that they begin together",
+            if is_pressure { "the pressure" } else { "F_z" },
+            errors.median,
+            errors.worst
+        ))
+    }
 }
 
 /// A stretch of frames with one load.

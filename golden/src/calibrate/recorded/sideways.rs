@@ -22,6 +22,39 @@ pub(super) fn is_all(measured: &Measured) -> bool {
         && measured.forces.iter().any(|force| force[0].is_some() || force[1].is_some())
 }
 
+/// `F_x` and `F_y` that the design finds in frames.
+///
+/// # Errors
+///
+/// [`RecordedError::Recording`] for frames in which, by the design, nothing presses.
+pub(super) fn found(design: &Design, frames: &[Vec<f64>]) -> Result<Vec<[f64; 2]>, RecordedError> {
+    let solver = Solver::new(design)?;
+    let of = |frame: &Vec<f64>| -> Result<[f64; 3], RecordedError> {
+        let solution = solver.solve(frame)?;
+        Ok(if solution.status.contains(Status::NO_CONTACT) { [0.0; 3] } else { solution.resultant })
+    };
+    let found = frames.iter().map(of).collect::<Result<Vec<_>, _>>()?;
+    let largest = found.iter().fold(0.0_f64, |most, [.., z]| most.max(z.abs()));
+    let loaded = found.iter().filter(|[.., z]| z.abs() > REST * largest).count();
+    let pulls = found.iter().filter(|[.., z]| *z > REST * largest).count();
+    if 2 * pulls >= loaded {
+        let problem = if loaded == 0 {
+            "no F_z is known, and by the design nothing presses".to_owned()
+        } else {
+            format!("no F_z is known, and by the design {pulls} of {loaded} frames pull")
+        };
+        return Err(RecordedError::of(
+            design,
+            (
+                problem,
+                "calibrate the design with F_z first, weights do; `sptfra check` says what is wrong with the frames"
+                    .to_owned(),
+            ),
+        ));
+    }
+    Ok(found.into_iter().map(|[x, y, _]| [x, y]).collect())
+}
+
 /// Fits the constants of friction; all else stays as the design has it.
 pub(super) fn fit(
     design: &Design,
@@ -39,20 +72,6 @@ pub(super) fn fit(
     let known = |k: &usize| measured.forces[*k][0].is_some() || measured.forces[*k][1].is_some();
     let known: Vec<usize> = (0..frames.len()).filter(known).collect();
     let largest = known.iter().fold(0.0_f64, |most, &k| most.max(found[k].abs()));
-    let loaded = known.iter().filter(|&&k| found[k].abs() > REST * largest).count();
-    let pulls = known.iter().filter(|&&k| found[k] > REST * largest).count();
-    if 2 * pulls >= loaded {
-        let problem = if loaded == 0 {
-            "no F_z is known, and by the design nothing presses".to_owned()
-        } else {
-            format!("no F_z is known, and by the design {pulls} of {loaded} frames pull")
-        };
-        return Err(wrong((
-            problem,
-            "calibrate the design with F_z first, weights do; `sptfra check` says what is wrong with the frames"
-                .to_owned(),
-        )));
-    }
     for &k in &known {
         measured.forces[k][2] = Some(if found[k].abs() > REST * largest { found[k] } else { 0.0 });
     }

@@ -7,10 +7,10 @@ use std::path::Path;
 
 use super::RecordedError;
 use super::columns::{Meaning, meanings};
-use crate::frames::{FrameError, Frames, Numbers, Table, text};
+use crate::frames::{FrameError, Frames, NO_TIME, Numbers, Table, between, text};
 use crate::numbers::counted;
 use crate::separator::{self, Separator, is_unknown};
-use crate::units::timestamp;
+use crate::units::{timestamp, without_gaps};
 
 /// Frames and forces must have this share of the frames' time in common.
 const COMMON: f64 = 0.5;
@@ -27,6 +27,8 @@ pub enum Pairing {
     Clock,
     /// By times that may count from the beginning of each log.
     Clocks,
+    /// By times of clocks that differ, which were set to begin together.
+    Apart,
 }
 
 /// What was measured, frame by frame: forces and pressures have an entry for each, known or not.
@@ -83,8 +85,13 @@ impl Measured {
             return Err("times fall from one line to the next: leave their column out, or sort the lines".to_owned());
         }
         let (begin, end) = (times[0], times[times.len() - 1]);
-        let common = frames.iter().filter(|time| (begin..=end).contains(*time)).count();
-        if (common as f64) < COMMON * frames.len() as f64 {
+        let is_enough = |ahead: f64| {
+            let common = frames.iter().filter(|&&time| (begin..=end).contains(&(time + ahead))).count();
+            common as f64 >= COMMON * frames.len() as f64
+        };
+        let ahead = begin - frames[0];
+        let are_apart = !is_enough(0.0);
+        if are_apart && !is_enough(ahead) {
             return Err(format!(
                 "the frames' times go from {} to {} s, the other file's from {begin} to {end} s: give both the same clock and a unit \
                  in the header, or leave the columns of times out",
@@ -92,6 +99,8 @@ impl Measured {
                 frames[frames.len() - 1]
             ));
         }
+        // Differences of what begins in 1970 lose digits that no log has.
+        let times: &Vec<f64> = &times.iter().map(|time| if are_apart { time - ahead } else { *time }).collect();
         let lines: Vec<Option<(usize, f64)>> = frames
             .iter()
             .map(|&time| {
@@ -118,13 +127,21 @@ impl Measured {
             lines.iter().map(|line| line.map_or(String::new(), |line| names[nearest(line)].clone())).collect()
         };
         let mut remarks = self.remarks.clone();
-        remarks.push("frames are paired by their times with what was measured".to_owned());
+        remarks.push(if are_apart {
+            format!("the clocks of frames and of what was measured differ by about {ahead:.1} s: both are set to begin together")
+        } else {
+            "frames are paired by their times with what was measured".to_owned()
+        });
         Ok(Self {
             forces: (0..frames.len()).map(|frame| force.each_ref().map(|axis| axis[frame])).collect(),
             pressures: value(&|line| self.pressures[line]),
             contacts: self.contacts.as_ref().map(contact),
             times: Some(frames.to_vec()),
-            pairing: if frames[0].abs().max(begin.abs()) < BEGINS { Pairing::Clocks } else { Pairing::Clock },
+            pairing: match frames[0].abs().max(begin.abs()) {
+                _ if are_apart => Pairing::Apart,
+                begin if begin < BEGINS => Pairing::Clocks,
+                _ => Pairing::Clock,
+            },
             remarks,
         })
     }
@@ -264,7 +281,15 @@ fn read(path: &Path, table: &Table<'_>, example: &str, guess: &Guess) -> Result<
     }
     numbers.end()?;
     measured.contacts = contact.map(|_| contacts);
-    measured.times = times.iter().all(|time| time.is_finite()).then_some(times).filter(|times| !times.is_empty());
+    let times = without_gaps(times).map_err(|place| FrameError::Shape {
+        path: path.to_path_buf(),
+        line: table.rows[place].0,
+        problem: NO_TIME.to_owned(),
+    })?;
+    if let Some((_, unknown)) = times.as_ref().filter(|(_, unknown)| *unknown > 0) {
+        measured.remarks.push(format!("{}: {}", path.display(), between(*unknown)));
+    }
+    measured.times = times.map(|(times, _)| times);
     Ok(measured)
 }
 

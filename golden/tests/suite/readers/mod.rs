@@ -117,6 +117,69 @@ fn a_row_with_an_error_of_a_spreadsheet_is_no_remark() {
 }
 
 #[test]
+fn an_error_of_a_spreadsheet_in_the_first_row() {
+    for text in ["#N/A,1,2,3,4,5\n", " #N/A , 1, 2,3,4,5\n", "#DIV/0! 1 2 3 4 5\n", "#N/A,#N/A,2,3,4,5\n"] {
+        refused(read(&format!("{text}{LINES}"), 0), &["line 1, column 1"]);
+        let lines = if text.contains(',') { LINES.to_owned() } else { LINES.replace(',', " ") };
+        let skip = Layout { skip_bad: true, ..Layout::default() };
+        assert_eq!(both(read(&format!("{text}{lines}"), skip)).skipped, [0], "{text:?}");
+    }
+}
+
+/// Lines below the frames with a word where all others have a number.
+#[test]
+fn means_below_the_frames_are_none() {
+    let frames = "0,-7.5,-1,0,2,-3,5\n1,-8,-2,1,0.5,-4,6\n";
+    for text in [format!("{frames}mean,1,2,3,4,5,6\n"), format!("{frames}mean,1,2,3,4,5,6\nstd,1,2,3,4,5,6\n")] {
+        let remark = both(read(&text, 1)).remark.unwrap();
+        assert!(
+            remark.contains("line 3: a word where other lines have a number") && remark.contains("left out"),
+            "{remark}"
+        );
+    }
+    assert_eq!(read(&format!("{frames},1,2,3,4,5,6\n"), 1).unwrap().frames.len(), 3);
+}
+
+#[test]
+fn a_time_that_is_not_there() {
+    let line = |time: String| format!("{time},-8,-2,1,0.5,-4,6\n");
+    let text = |blank: usize, count: usize| -> String {
+        let time = |at: usize| if at == blank { String::new() } else { at.to_string() };
+        "t (s),p0,p1,p2,p3,p4,p5\n".to_owned() + &(0..count).map(|at| line(time(at))).collect::<String>()
+    };
+    let found = read(&text(4, 12), 0).unwrap();
+    assert_eq!(found.times, Some((0..12).map(f64::from).collect()));
+    assert!(found.remark.unwrap().contains("1 line without a time"));
+    refused(read(&text(0, 12), 0), &["line 2", "the time is no number", "fill it in"]);
+    refused(read(&text(1, 3), 0), &["line 3", "the time is no number"]);
+}
+
+/// Letters and digits side by side that stand for rows and columns.
+#[test]
+fn names_of_places_in_the_grid() {
+    let by_columns = "-7.5,2,-1,-3,0,5\n-8,0.5,-2,-4,1,6\n";
+    for (names, lines, is_said) in [
+        ("A1,B1,A2,B2,A3,B3", by_columns, true),
+        ("s11,s21,s12,s22,s13,s23", by_columns, true),
+        ("A1,B1,C1,A2,B2,C2", LINES, false),
+        ("s11,s12,s13,s21,s22,s23", LINES, false),
+    ] {
+        let remark = both(read(&format!("{names}\n{lines}"), 0)).remark.unwrap_or_default();
+        assert_eq!(remark.contains("not in the order of the taxels"), is_said, "{names}: {remark}");
+    }
+    let square = Design { sensor: golden::sensor::Sensor { rows: 3, ..pad("").sensor }, ..pad("") };
+    for names in ["s11,s21,s31,s12,s22,s32,s13,s23,s33", "A1,B1,C1,A2,B2,C2,A3,B3,C3"] {
+        let text = format!("{names}\n80,70,60,50,40,30,20,10,90\n");
+        refused(
+            read_bytes("f.csv", text.as_bytes(), &square, 0),
+            &["line 1", "either may be that of the row", "--skip-lines 1"],
+        );
+        let skip = Layout { skip_lines: 1, ..Layout::default() };
+        assert_eq!(read_bytes("f.csv", text.as_bytes(), &square, skip).unwrap().frames[0][1], 70.0);
+    }
+}
+
+#[test]
 fn a_header_of_sensor_numbers_is_none_of_the_frames() {
     for (text, labels) in [
         // With gaps, and behind a word.

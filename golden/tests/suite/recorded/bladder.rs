@@ -106,4 +106,15 @@ fn pressures_of_another_moment_are_paired_or_refused() {
         let floor = found.design.algorithm.noise_floor_pa;
         assert!(floor < 5.0 * 24.4, "{said}: {floor}");
     }
+    // Lines that are lost in the middle.
+    let mut logged = pressures.clone();
+    logged.drain(240..270);
+    let measured = Measured::of_pressures(logged.into_iter().map(Some).collect());
+    let said = fit_uniform(&design(COUNTS, ""), &frames, &measured).unwrap_err().to_string();
+    assert!(said.contains("30 lines of pressures are missing"), "{said}");
+    // And those of other frames, in as many lines.
+    let turned: Vec<_> = pressures.iter().rev().map(|pressure| Some(*pressure)).collect();
+    let measured = Measured::of_pressures(turned);
+    let missing = fit_uniform(&design(COUNTS, ""), &frames, &measured).map(|found| found.refuse_missing(&measured));
+    assert!(!matches!(&missing, Ok(Ok(()))), "{missing:?}");
 }

@@ -75,6 +75,11 @@ fn tangential_forces_tell_the_constants_of_friction() {
     assert!(said.contains("no F_z is known, and by the design ") && said.contains("with F_z first"), "{said}");
     let said = fit_forces(&before, &vec![vec![0.0; 78]; sideways.forces.len()], &sideways).map(drop).unwrap_err();
     assert!(said.to_string().contains("by the design nothing presses"), "{said}");
+    // Forces of other frames.
+    let mut other = sideways.clone();
+    other.forces.sort_by(|a, b| a[0].unwrap_or(0.0).abs().total_cmp(&b[0].unwrap_or(0.0).abs()));
+    let said = fit_forces(&before, &recording.frames, &other).map(drop).unwrap_err().to_string();
+    assert!(said.contains("the F_x and F_y that the design finds do not follow them"), "{said}");
     let line = fit_forces(&design("", ""), &recording.frames, &sideways).unwrap();
     assert!(says(&line.undetermined, &["friction: the line search has no constants"]), "{:?}", line.undetermined);
     // Forces the wrong way round are no friction.

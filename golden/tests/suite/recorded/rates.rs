@@ -67,6 +67,25 @@ fn logs_without_times_are_paired_by_what_they_have_in_common() {
     assert!(refused.contains("do not begin together") && refused.contains("column of times"), "{refused}");
 }
 
+/// Clocks that differ by years, or by a little where one says what belongs together.
+#[test]
+fn clocks_that_differ_are_said_and_the_lag_is_found() {
+    let (frames, measured) = apart(&recording(), 20);
+    let times = |begin: f64, count: usize| (0..count).map(|at| begin + 0.01 * at as f64).collect::<Vec<f64>>();
+    let fit = |begin: f64| {
+        let logged = Measured { times: Some(times(1e3, measured.forces.len())), ..measured.clone() };
+        fit_forces(&design(COUNTS, ""), &frames, &logged.at(&times(begin, frames.len())).unwrap())
+    };
+    let found = fit(1e6).unwrap();
+    assert!(
+        says(&found.remarks, &["clocks", "differ"]) && says(&found.remarks, &["line 1 to frame 21"]),
+        "{:?}",
+        found.remarks
+    );
+    let refused = fit(1e3).unwrap_err().to_string();
+    assert!(refused.contains("line 1 to frame 21 would: do their clocks differ?"), "{refused}");
+}
+
 #[test]
 fn logs_with_missing_frames_are_refused() {
     let recording = recording();
@@ -136,8 +155,12 @@ fn logs_of_other_rates_are_paired_by_their_times() {
             .all(|(a, b)| (a - b).abs() < 1e-9)
     );
     assert!(says(&paired.remarks, &["paired by their times"]));
+    // Clocks that differ are set to begin together, and the lag is found by what fits; nothing fits a log of another length.
     let far: Vec<f64> = times.iter().map(|time| time + 1e4).collect();
-    assert!(measured.at(&far).unwrap_err().contains("the same clock"));
+    let apart = measured.at(&far).unwrap();
+    assert!(says(&apart.remarks, &["the clocks", "differ by about -10000.5 s"]), "{:?}", apart.remarks);
+    let short: Vec<f64> = times.iter().map(|time| 10.0 * time + 1e4).collect();
+    assert!(measured.at(&short).unwrap_err().contains("the same clock"));
     let falling: Vec<f64> = times.iter().map(|time| -time).collect();
     assert!(measured.at(&falling).unwrap_err().contains("times fall"));
     // Between two lines a straight one.

@@ -50,6 +50,11 @@ fn columns_units_and_blanks() {
     assert!(found.remarks.iter().any(|line| line.contains("not used") && line.contains("operator")));
     let found = forces("time (ms),F_z\n0,1\n1500,2\n").unwrap();
     assert_eq!(found.times, Some(vec![0.0, 1.5]));
+    // A time that is not there.
+    let found = forces("t (s),F_z\n0,1\n,2\n2,3\n3,3\n4,3\n5,3\n6,3\n7,3\n8,3\n9,3\n").unwrap();
+    assert_eq!(found.times, Some((0..10).map(f64::from).collect()));
+    assert!(found.remarks.iter().any(|line| line.contains("1 line without a time")), "{:?}", found.remarks);
+    assert!(forces("t (s),F_z\n0,1\n,2\n2,3\n").unwrap_err().contains("line 3: the time is no number, and others are"));
     for names in ["timestamp,F_z\n", ""] {
         let found = forces(&format!("{names}2026-03-01 12:00:00Z,1\n2026-03-01T12:00:01.5,2\n")).unwrap();
         assert_eq!(found.times, Some(vec![1_772_366_400.0, 1_772_366_401.5]));
