@@ -251,11 +251,9 @@ fn indexed(names: &[String]) -> Vec<String> {
         (!digits.is_empty()).then(|| format!("{before}{}:{}", whole.0, whole.1))
     };
     let lettered = |(before, digits): &(&str, &str)| {
-        let letter = before.chars().last().filter(char::is_ascii_alphabetic)?;
-        let is_one = !digits.is_empty() && before.len() == parts[0].0.len();
-        let same = before[..before.len() - 1] == parts[0].0[..before.len() - 1];
-        (is_one && same)
-            .then(|| format!("{}{}:{digits}", &before[..before.len() - 1], u32::from(letter.to_ascii_lowercase()) - 97))
+        let (stem, letter) = last_letter(before)?;
+        let same = !digits.is_empty() && last_letter(parts[0].0).is_some_and(|(first, _)| first == stem);
+        same.then(|| format!("{stem}{}:{digits}", u32::from(letter.to_ascii_lowercase()) - 97))
     };
     let are_letters = parts.iter().any(|(before, _)| *before != parts[0].0);
     let all = if are_letters {
@@ -264,6 +262,13 @@ fn indexed(names: &[String]) -> Vec<String> {
         parts.iter().map(halves).collect::<Option<_>>()
     };
     all.unwrap_or_else(|| names.to_vec())
+}
+
+/// A word without the letter at its end, and that.
+fn last_letter(word: &str) -> Option<(&str, char)> {
+    let mut letters = word.chars();
+    let letter = letters.next_back().filter(char::is_ascii_alphabetic)?;
+    Some((letters.as_str(), letter))
 }
 
 /// What stands before the digits at the end of a name, and these.

@@ -43,6 +43,16 @@ const WORDS: [&str; 24] = [
     "\u{feff}",
 ];
 
+/// Headers of four taxels.
+const HEADERS: [&str; 6] = [
+    "",
+    "p0,p1,p3,p2\n",
+    "r1c1 (kPa),r2c1 (kPa),r1c2 (kPa),r2c2 (kPa)\n",
+    "# t;0;1;2\n",
+    "A1,B1,A2,B2\n",
+    "s11,s12,s21,s22\n",
+];
+
 /// The files of a folder with this ending.
 fn texts(folder: &Path, ending: &str) -> Vec<String> {
     let mut paths: Vec<PathBuf> =
@@ -183,7 +193,7 @@ proptest! {
         rows in prop::collection::vec(prop::collection::vec(-1e6..1e6_f64, 4), 1..5),
         changes in changes(),
         labels in 0..3_usize,
-        header in prop::sample::select(&["", "p0,p1,p3,p2\n", "r1c1 (kPa),r2c1 (kPa),r1c2 (kPa),r2c2 (kPa)\n", "# t;0;1;2\n"][..]),
+        header in prop::sample::select(&HEADERS[..]),
     ) {
         let lines: Vec<String> =
             rows.iter().map(|row| row.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")).collect();

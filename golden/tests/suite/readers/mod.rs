@@ -163,6 +163,9 @@ fn names_of_places_in_the_grid() {
         ("s11,s21,s12,s22,s13,s23", by_columns, true),
         ("A1,B1,C1,A2,B2,C2", LINES, false),
         ("s11,s12,s13,s21,s22,s23", LINES, false),
+        // Of other lengths, and no letters of the alphabet.
+        ("a1,leftside2,b3,c4,d5,e6", LINES, false),
+        ("é1,ab2,b3,c4,d5,e6", LINES, false),
     ] {
         let remark = both(read(&format!("{names}\n{lines}"), 0)).remark.unwrap_or_default();
         assert_eq!(remark.contains("not in the order of the taxels"), is_said, "{names}: {remark}");
