@@ -153,7 +153,7 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
         found(kind, message);
         return findings;
     }
-    if let Some(message) = scaled::check(&design.sensor, frames) {
+    if let Some(message) = scaled::check(frames) {
         found(Kind::Scaled, message);
         return findings;
     }

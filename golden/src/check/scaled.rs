@@ -1,9 +1,7 @@
 //! Frames that are each divided by a norm of their own: the largest reading, the sum, the root of the squares.
 
-use super::quiet::{TOGETHER, together};
 use super::{LOADED, largest};
-use crate::numbers::{magnitude, middle, rounded};
-use crate::sensor::Sensor;
+use crate::numbers::rounded;
 
 /// From so many frames on.
 const FRAMES: usize = 5;
@@ -18,12 +16,6 @@ const SAME: f64 = 1e-9;
 const PRINTED: f64 = 1e-4;
 /// Largest readings of one load differ by less than this factor, whatever the direction that it pushes in.
 const OTHER_SHAPE: f64 = 1.5;
-/// Readings below this share of the largest are far from the contact.
-const FAR: f64 = 0.1;
-/// Fewer taxels there tell no noise.
-const FEW: usize = 30;
-/// Noise of the readings makes norms differ by more than this share of it.
-const OF_NOISE: f64 = 0.1;
 
 /// A norm by its name, of one frame.
 type Norm = (&'static str, fn(&[f64]) -> f64);
@@ -33,13 +25,13 @@ const NORMS: [Norm; 4] =
     [("sum", sum), ("sum of magnitudes", magnitudes), ("root of the sum of squares", root), ("root mean square", rms)];
 
 /// A message where all frames, or all loaded ones, values as they are in the file, have the same norm and differ otherwise.
-pub(super) fn check(sensor: &Sensor, frames: &[Vec<f64>]) -> Option<String> {
+pub(super) fn check(frames: &[Vec<f64>]) -> Option<String> {
     let peak = frames.iter().map(|frame| largest(frame)).fold(0.0, f64::max);
     let some = |share: f64| frames.iter().filter(|frame| largest(frame) > share * peak).collect::<Vec<_>>();
-    [0.0, LOADED].into_iter().find_map(|share| of_all(sensor, &some(share)))
+    [0.0, LOADED].into_iter().find_map(|share| of_all(&some(share)))
 }
 
-fn of_all(sensor: &Sensor, some: &[&Vec<f64>]) -> Option<String> {
+fn of_all(some: &[&Vec<f64>]) -> Option<String> {
     let first = *some.first()?;
     let peak = largest(first);
     let whole = some.iter().all(|frame| frame.iter().all(|value| value.fract() == 0.0));
@@ -54,13 +46,18 @@ fn of_all(sensor: &Sensor, some: &[&Vec<f64>]) -> Option<String> {
     // The peak of one contact that stays may be the same by symmetry.
     let at = |frame: &[f64]| frame.iter().position(|value| alike(peak, value.abs(), SAME));
     let moves = some.iter().any(|frame| at(frame) != at(first));
+    // One load elsewhere, without noise, has the same sum too.
+    let moves = moves && !same(sum, PRINTED);
     // From 0 to 1, what does not press may be the 1.
     let is_one = (moves || is_usual(peak)) && few(largest)
         || is_usual(peak) && least(first) == 0.0 && same(least, SAME) && few(least);
     let (what, value) = if same(largest, SAME) && is_one {
         ("largest reading", peak)
     } else {
-        let same = |(_, of): &&Norm| same(*of, PRINTED) && (is_usual(of(first)) || is_made(sensor, some, *of));
+        // Or the shapes differ as those of one load do not.
+        let [most, least] = [f64::max, f64::min].map(|of| some.iter().map(|frame| largest(frame)).reduce(of));
+        let differ = most.zip(least).is_some_and(|(most, least)| most > OTHER_SHAPE * least);
+        let same = |(_, of): &&Norm| same(*of, PRINTED) && (differ || is_usual(of(first)));
         let (what, of) = NORMS.iter().filter(same).min_by_key(|(_, of)| !alike(1.0, of(first), PRINTED))?;
         (*what, of(first))
     };
@@ -70,34 +67,6 @@ fn of_all(sensor: &Sensor, some: &[&Vec<f64>]) -> Option<String> {
          readings as the sensor gives them, or scale all frames alike",
         some.len()
     ))
-}
-
-/// Whether a norm that is the same in all frames is so by division: their shapes differ as those of one load do not, or they
-/// have noise of which the norm has none.
-fn is_made(sensor: &Sensor, frames: &[&Vec<f64>], norm: fn(&[f64]) -> f64) -> bool {
-    let peaks = || frames.iter().map(|frame| largest(frame));
-    if peaks().fold(0.0, f64::max) > OTHER_SHAPE * peaks().fold(f64::INFINITY, f64::min) {
-        return true;
-    }
-    let is_far = |taxel: &usize| frames.iter().all(|frame| frame[*taxel].abs() < FAR * largest(frame));
-    let far: Vec<usize> = (0..sensor.taxels()).filter(is_far).collect();
-    if far.len() < FEW {
-        return false;
-    }
-    let steps = || frames.windows(2);
-    let step = |pair: &[&Vec<f64>]| {
-        let mut step = vec![0.0; pair[0].len()];
-        for &taxel in &far {
-            step[taxel] = pair[1][taxel] - pair[0][taxel];
-        }
-        step
-    };
-    // What a layer hands on from the contact has one sign on neighbours.
-    let signs =
-        |step: Vec<f64>| step.iter().map(|step| if *step == 0.0 { 0.0 } else { step.signum() }).collect::<Vec<_>>();
-    let is_noise = middle(steps().map(|pair| together(sensor, &signs(step(pair))))) < TOGETHER;
-    let noise = middle(steps().map(|pair| root(&step(pair)))) / (far.len() as f64).sqrt();
-    is_noise && magnitude(steps().map(|pair| norm(pair[1]) - norm(pair[0]))) < OF_NOISE * noise
 }
 
 /// Whether programs scale to this value: one of a single digit, or the end of whole numbers of some bits.

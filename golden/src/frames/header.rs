@@ -2,6 +2,7 @@
 
 use super::Clock;
 use super::layout::{Layout, Target};
+use super::text::Label;
 use crate::numbers::{correlation, rounded, sorted};
 use crate::sensor::Sensor;
 use crate::separator;
@@ -211,13 +212,14 @@ pub(super) fn is_numbered(fields: &[&[u8]], sensor: &Sensor, alone: bool) -> boo
 ///
 /// Its whole numbers ascend, or differ and stand behind a word where others have a number. They are unlike the row below: a
 /// frame is much like the next one.
-pub(super) fn guessed(rows: &[Vec<f64>], labels: &[bool]) -> Option<Vec<bool>> {
+pub(super) fn guessed(rows: &[Vec<f64>], labels: &[Label]) -> Option<Vec<bool>> {
     let first = rows.first()?;
     let again: Vec<bool> = (0..rows.len()).map(|row| rows[row] == *first && labels[row] == labels[0]).collect();
     let others = || (0..rows.len()).filter(|&row| !again[row]);
     let ascend = ascends(first) && !others().any(|row| ascends(&rows[row]));
     // Numbers of columns differ; counts of a frame often do not.
-    let is_labelled = is_whole(first) && differ(first) && !labels[0] && others().all(|row| labels[row]);
+    let is_number = |row: usize| labels[row] == Label::Number;
+    let is_labelled = is_whole(first) && differ(first) && !is_number(0) && others().all(is_number);
     let is_unlike = |row: usize| correlation(first.iter().copied().zip(rows[row].iter().copied())) < ALIKE;
     let is_header = others().next().is_some_and(is_unlike)
         && !again.windows(2).any(|pair| pair[0] && pair[1])
@@ -246,14 +248,15 @@ pub(super) fn ascends(row: &[f64]) -> bool {
 fn indexed(names: &[String]) -> Vec<String> {
     let parts: Vec<(&str, &str)> = names.iter().map(|name| split(name).0).map(at_digits).collect();
     let halves = |(before, digits): &(&str, &str)| {
-        let whole = (digits.len().is_multiple_of(2) && *before == parts[0].0 && digits.len() == parts[0].1.len())
-            .then(|| digits.split_at(digits.len() / 2))?;
-        (!digits.is_empty()).then(|| format!("{before}{}:{}", whole.0, whole.1))
+        let is_even = !digits.is_empty() && digits.len().is_multiple_of(2);
+        let (row, column) =
+            digits.split_at_checked(digits.len() / 2).filter(|_| is_even && digits.len() == parts[0].1.len())?;
+        Some(format!("{before}{row}:{column}"))
     };
     let lettered = |(before, digits): &(&str, &str)| {
         let (stem, letter) = last_letter(before)?;
         let same = !digits.is_empty() && last_letter(parts[0].0).is_some_and(|(first, _)| first == stem);
-        same.then(|| format!("{stem}{}:{digits}", u32::from(letter.to_ascii_lowercase()) - 97))
+        same.then(|| format!("{stem}{}:{digits}", u32::from(letter.to_ascii_lowercase()) - u32::from('a')))
     };
     let are_letters = parts.iter().any(|(before, _)| *before != parts[0].0);
     let all = if are_letters {

@@ -14,6 +14,15 @@ use crate::units::{pascals, timestamp};
 /// Lines of means, deviations and the like at most.
 const SUMMARIES: usize = 8;
 
+/// The first label of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Label {
+    /// A number or a time; so is a row without labels.
+    Number,
+    Word,
+    Blank,
+}
+
 /// Rows of a file with their lines, and what is to be said of it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Text {
@@ -331,16 +340,18 @@ pub(super) fn read(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
         return blocks.read(lines, target);
     }
     let mut text = Text::default();
-    let mut labels: Vec<bool> = Vec::new();
+    let mut labels: Vec<Label> = Vec::new();
     for line in separator::lines(bytes) {
         let Some(row) = lines.row(line)? else { continue };
         let separator = lines.cells.separator.unwrap_or(Separator::Spaces);
         let fields = separator.split(separator.trim(line));
         let time = lines.time(fields.get(..lines.labels()).unwrap_or_default());
-        // What is not there is no word.
-        let is_word =
-            fields.first().is_some_and(|label| no_number(label) && !is_unknown(&String::from_utf8_lossy(label)));
-        labels.push(lines.labels() == 0 || !is_word || time.is_some());
+        labels.push(match fields.first() {
+            Some(label) if lines.labels() > 0 && time.is_none() && separator::number(label).is_none() => {
+                if is_unknown(&String::from_utf8_lossy(label)) { Label::Blank } else { Label::Word }
+            }
+            _ => Label::Number,
+        });
         text.times.push(time.unwrap_or(f64::NAN));
         text.rows.push(row);
         text.lines.push(lines.cells.number);
@@ -351,10 +362,11 @@ pub(super) fn read(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
         lines.cells.number = text.lines[0];
         lines.numbered(magnitude(&text.rows[0]));
         let kept = || is_head.iter().map(|is_head| !is_head);
-        let [mut of_rows, mut of_lines, mut of_times] = [kept(), kept(), kept()];
+        let [mut of_rows, mut of_lines, mut of_times, mut of_labels] = [kept(), kept(), kept(), kept()];
         text.rows.retain(|_| of_rows.next() == Some(true));
         text.lines.retain(|_| of_lines.next() == Some(true));
         text.times.retain(|_| of_times.next() == Some(true));
+        labels.retain(|_| of_labels.next() == Some(true));
     }
     drop_summaries(&mut lines, &mut text, &labels);
     lines.end(&mut text)?;
@@ -362,14 +374,12 @@ pub(super) fn read(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
 }
 
 /// Takes off lines at the end with a word as their label where all others have a number: mean, deviation and the like.
-fn drop_summaries(lines: &mut Lines, text: &mut Text, labels: &[bool]) {
-    let frames = labels.iter().rposition(|is_number| *is_number).map_or(0, |last| last + 1);
+fn drop_summaries(lines: &mut Lines, text: &mut Text, labels: &[Label]) {
+    let frames = labels.iter().take_while(|label| **label == Label::Number).count();
     let summaries = labels.len() - frames;
-    if labels.len() > text.rows.len()
-        || summaries == 0
-        || frames < 2
-        || summaries > SUMMARIES.min(frames)
-        || labels[..frames].contains(&false)
+    if frames < 2
+        || !(1..=SUMMARIES.min(frames)).contains(&summaries)
+        || labels[frames..].iter().any(|label| *label != Label::Word)
     {
         return;
     }

@@ -75,7 +75,7 @@ impl Lags {
         self.best_of(self.around(self.zero()))
     }
 
-    /// The best lag, where 0 explains less than half of what the best one does not leave.
+    /// The best lag, where none leaves more than half unexplained.
     pub(super) fn far_better(&self) -> Option<isize> {
         self.best().ok().filter(|lag| *lag != 0 && self.left[self.zero()] > HALF)
     }

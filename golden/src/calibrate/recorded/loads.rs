@@ -56,6 +56,37 @@ impl Follow {
     }
 }
 
+/// By how many frames the loads come late.
+///
+/// # Errors
+///
+/// Why none can be told.
+fn lag_of(readings: &[f64], loads: &[Option<f64>], pairing: Pairing, is_sideways: bool) -> Result<isize, String> {
+    let Some(lags) = Lags::of(readings, loads, APART) else {
+        return match pairing {
+            Pairing::Apart => Err("their clocks differ, and no lag explains what the frames read".to_owned()),
+            // Frames that are too few tell nothing.
+            Pairing::Lines if is_sideways && readings.len() >= lag::FRAMES => {
+                Err("no F_z is known, and the F_x and F_y that the design finds do not follow them".to_owned())
+            }
+            _ => Ok(0),
+        };
+    };
+    // One clock says what belongs together, unless it does not fit at all.
+    if pairing == Pairing::Clock {
+        return lags.far_better().map_or(Ok(0), |lag| {
+            Err(format!("by their times they do not fit, and {} would: do their clocks differ?", together(lag)))
+        });
+    }
+    // Files of one length hardly begin far apart.
+    let is_near = readings.len() == loads.len() && pairing != Pairing::Apart;
+    let around_zero = if is_near { lags.best_around_zero() } else { None };
+    lags.best().or_else(|[one, other]| {
+        let why = || format!("{} fits the loads nearly as well as {}", together(other), together(one));
+        around_zero.ok_or_else(why)
+    })
+}
+
 /// Frames and lines of the forces, or of a bladder's pressures, one for one. Where they do not begin together, the lag is
 /// found.
 pub(super) fn pair<'a>(
@@ -83,40 +114,8 @@ pub(super) fn pair<'a>(
     let unclear = |why: String| {
         (format!("frames and loads do not begin together, or frames are missing: {why}"), remedy.to_owned())
     };
-    let mut lags = Lags::of(&readings, &loads, APART);
-    // Nor are forces along the surface those that the design finds, if no lag fits.
-    let is_sideways = matches!(follow, Follow::Sideways(_)) && count >= lag::FRAMES;
-    if lags.is_none() {
-        match measured.pairing {
-            Pairing::Apart => {
-                return Err(unclear("their clocks differ, and no lag explains what the frames read".to_owned()));
-            }
-            Pairing::Lines if is_sideways => {
-                return Err(unclear(
-                    "no F_z is known, and the F_x and F_y that the design finds do not follow them".to_owned(),
-                ));
-            }
-            _ => {}
-        }
-    }
-    // One clock says what belongs together, whatever fits better, unless it does not fit at all.
-    if measured.pairing == Pairing::Clock
-        && let Some(lag) = lags.take().and_then(|lags| lags.far_better())
-    {
-        return Err(unclear(format!(
-            "by their times they do not fit, and {} would: do their clocks differ?",
-            together(lag)
-        )));
-    }
-    // Nor do files of one length begin far apart.
-    let is_near = apart == 0 && measured.pairing != Pairing::Apart;
-    let around_zero = lags.as_ref().filter(|_| is_near).and_then(Lags::best_around_zero);
-    let lag = match (lags.map_or(Ok(0), |lags| lags.best()), around_zero) {
-        (Ok(lag), _) | (Err(_), Some(lag)) => lag,
-        (Err([one, other]), None) => {
-            return Err(unclear(format!("{} fits the loads nearly as well as {}", together(other), together(one))));
-        }
-    };
+    let is_sideways = matches!(follow, Follow::Sideways(_));
+    let lag = lag_of(&readings, &loads, measured.pairing, is_sideways).map_err(unclear)?;
     let lost = |place: usize, count: isize| {
         let lost = match count {
             1 => "1 frame is".to_owned(),

@@ -138,6 +138,9 @@ fn means_below_the_frames_are_none() {
         );
     }
     assert_eq!(read(&format!("{frames},1,2,3,4,5,6\n"), 1).unwrap().frames.len(), 3);
+    // A mark on some lines only is no number.
+    let marked = frames.replace("0,-7.5", ",-7.5").replace("1,-8", ",-8") + "release,1,2,3,4,5,6\n";
+    assert_eq!(read(&marked, 1).unwrap().frames.len(), 3);
 }
 
 #[test]
