@@ -100,7 +100,11 @@ fn a_wrong_range_is_noticed() {
         ("sptfra_frame_corrections", "in_not_finite & counted", "in_not_finite"),
         ("sptfra_fold", "exact_4 <= octets_3 << exponent[2:0]", "exact_4 <= octets_3 << exponent[1:0]"),
         ("sptfra_fold", ".HALF  (DROPPED)", ".HALF  (0)"),
-        ("sptfra_frame_context", ".take       (direction_take),", ".take       (take),"),
+        (
+            "sptfra_frame_context",
+            ".take       (direction_take),\n                .oldest     (direction_exponent)",
+            ".take       (take),\n                .oldest     (direction_exponent)",
+        ),
         (
             "sptfra_frame_context",
             ".take       (take),\n                .oldest     (exponent)",
