@@ -133,7 +133,22 @@ fn a_difference_fails() {
     let mut deaf = files.clone();
     let top = format!("rtl/{name}.v");
     let text = String::from_utf8(deaf[&top].clone()).expect("UTF-8");
-    deaf.insert(top, text.replace(".m_tready (in_tready)", ".m_tready (1'b0)").into());
+    deaf.insert(top.clone(), text.replace(".m_tready (in_tready)", ".m_tready (1'b0)").into());
     let said = simulate(name, &deaf);
     assert!(said.contains("FAIL: 0 words wrong, 0 received"), "{said}");
+
+    // A packet that does not end, and one that ends early.
+    let ends = |last: &str| {
+        let mut other = files.clone();
+        let text = String::from_utf8(files[&top].clone()).expect("UTF-8").replace("(m_axis_tlast)", "()");
+        other.insert(
+            top.clone(),
+            text.replace("endmodule", &format!("assign m_axis_tlast = {last};\nendmodule")).into(),
+        );
+        simulate(name, &other)
+    };
+    let said = ends("1'b0");
+    assert!(said.contains("; frame 0 has 364 words, 312 too many"), "{said}");
+    let said = ends("1'b1");
+    assert!(said.contains("; frame 0 has 1 words, 51 too few"), "{said}");
 }

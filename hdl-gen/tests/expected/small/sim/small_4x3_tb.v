@@ -65,6 +65,11 @@ module small_4x3_tb #(
     integer received;
     integer wrong;
     integer quiet;
+    // The packet that comes in, its words so far, and the first packet of another length
+    integer packet;
+    integer words;
+    integer odd_packet;
+    integer odd_words;
     // Cycles since the reset, and those in which the frames began
     reg [31:0] now;
     reg [31:0] beginnings [0:FRAMES-1];
@@ -87,6 +92,10 @@ module small_4x3_tb #(
         received = 0;
         wrong = 0;
         quiet = 0;
+        packet = 0;
+        words = 0;
+        odd_packet = 0;
+        odd_words = 0;
         now = 32'd0;
         begun = 0;
         in_frame = 1'b0;
@@ -101,6 +110,7 @@ module small_4x3_tb #(
     wire is_timestamp = (received % BEATS_OUT == 1);
     wire [32:0] word = is_timestamp ? {1'b0, beginnings[received / BEATS_OUT]} : expected[received];
     wire right = (received < WORDS_OUT) && ({m_tlast, m_tdata} === word);
+    wire is_odd = (words >= BEATS_OUT) || (m_tlast && (words + 1 != BEATS_OUT));
 
     always @(posedge clock) begin
         cycle <= cycle + 1;
@@ -125,6 +135,12 @@ module small_4x3_tb #(
         end
         if (aresetn && take) begin
             received <= received + 1;
+            words <= m_tlast ? 0 : words + 1;
+            packet <= m_tlast ? packet + 1 : packet;
+            if ((odd_words == 0) ? is_odd : (odd_packet == packet)) begin
+                odd_packet <= packet;
+                odd_words <= words + 1;
+            end
             if (!right) begin
                 wrong <= wrong + 1;
                 if ((wrong < SHOWN) && (received < WORDS_OUT)) begin
@@ -140,7 +156,13 @@ module small_4x3_tb #(
                 $display("PASS: 7 frames, %0d words, %0d cycles", received, cycle);
                 $finish;
             end else begin
-                $display("FAIL: %0d words wrong, %0d received, %0d expected", wrong, received, WORDS_OUT);
+                $write("FAIL: %0d words wrong, %0d received, %0d expected", wrong, received, WORDS_OUT);
+                if (odd_words > BEATS_OUT) begin
+                    $write("; frame %0d has %0d words, %0d too many", odd_packet, odd_words, odd_words - BEATS_OUT);
+                end else if (odd_words > 0) begin
+                    $write("; frame %0d has %0d words, %0d too few", odd_packet, odd_words, BEATS_OUT - odd_words);
+                end
+                $write("\n");
                 // The simulator's exit code says so too.
                 $fatal(1, "the core is not the integer model's");
             end
