@@ -1,10 +1,10 @@
 //! Crosstalk of a row-column array, which adds a share of each row and of each column to its taxels.
 //!
-//! A taxel of true stress `t` reads `r_ij = t_ij + c (R_i + C_j)`. `R_i` is the sum of the true stresses of its row, `C_j` of
-//! its column, the taxel among them. With n columns, m rows and the row sums `P_i`, column sums `Q_j` and total `S` of what is
-//! read, the inverse is exact:
+//! A taxel of true stress `t` reads `r_ij = t_ij + c R_i + e C_j`. `R_i` is the sum of the true stresses of its row, `C_j` of
+//! its column, the taxel among them; a design has one share for both. With n columns, m rows and the row sums `P_i`, column
+//! sums `Q_j` and total `S` of what is read, the inverse is exact:
 //!
-//! `t_ij = r_ij - a P_i - b Q_j + d S`, `a = c / (1 + c n)`, `b = c / (1 + c m)`, `d = c (a + b) / (1 + c (n + m))`.
+//! `t_ij = r_ij - a P_i - b Q_j + d S`, `a = c / (1 + c n)`, `b = e / (1 + e m)`, `d = (a e + b c) / (1 + c n + e m)`.
 
 use crate::sensor::Sensor;
 
@@ -13,7 +13,8 @@ use crate::sensor::Sensor;
 pub struct Crosstalk {
     columns: usize,
     rows: usize,
-    share: f64,
+    /// Of the row and of the column.
+    shares: [f64; 2],
 }
 
 /// Factors of the inverse: `t_ij = r_ij - row P_i - column Q_j + total S`.
@@ -30,25 +31,35 @@ pub struct Factors {
 impl Crosstalk {
     /// The crosstalk that adds `share` of each row and each column of a sensor.
     pub fn new(sensor: &Sensor, share: f64) -> Self {
-        Self { columns: sensor.columns, rows: sensor.rows, share }
+        Self::of(sensor, [share; 2])
+    }
+
+    /// The crosstalk that adds these shares of each row and of each column.
+    pub(crate) fn of(sensor: &Sensor, shares: [f64; 2]) -> Self {
+        Self { columns: sensor.columns, rows: sensor.rows, shares }
     }
 
     /// Factors of the inverse.
     pub fn factors(&self) -> Factors {
-        let Self { share, .. } = *self;
-        let [along, across] = [self.columns, self.rows].map(|taxels| share * taxels as f64);
-        let [row, column] = [along, across].map(|sum| share / (1.0 + sum));
-        Factors { row, column, total: share * (row + column) / (1.0 + along + across) }
+        let [along, across] = self.of_sums();
+        let [of_row, of_column] = self.shares;
+        let (row, column) = (of_row / (1.0 + along), of_column / (1.0 + across));
+        Factors { row, column, total: (row * of_column + column * of_row) / (1.0 + along + across) }
     }
 
     /// What a taxel reads of a pressure that is the same everywhere, as a multiple of it.
     pub fn under_uniform_pressure(&self) -> f64 {
-        1.0 + self.share * (self.columns + self.rows) as f64
+        1.0 + self.of_sums().iter().sum::<f64>()
+    }
+
+    /// What a taxel reads more of its row, and of its column, under such a pressure.
+    fn of_sums(&self) -> [f64; 2] {
+        [self.shares[0] * self.columns as f64, self.shares[1] * self.rows as f64]
     }
 
     /// Adds the crosstalk to a frame of true stresses.
     pub fn add(&self, frame: &mut [f64]) {
-        self.combine(frame, Factors { row: -self.share, column: -self.share, total: 0.0 });
+        self.combine(frame, Factors { row: -self.shares[0], column: -self.shares[1], total: 0.0 });
     }
 
     /// Removes the crosstalk from a frame of readings in pascals.
@@ -82,15 +93,15 @@ mod tests {
     fn what_is_removed_was_added() {
         let sensor = Sensor { columns: 5, rows: 3, pitch_mm: [4.0, 2.0], depth_mm: 2.0 };
         let stress: Vec<f64> = (0..15).map(|taxel| f64::from(taxel * taxel % 11) - 7.0).collect();
-        for share in [0.0001, 0.02, 0.1] {
-            let crosstalk = Crosstalk::new(&sensor, share);
+        for shares in [[0.0001; 2], [0.02; 2], [0.1, 0.03], [0.0, 0.05]] {
+            let crosstalk = Crosstalk::of(&sensor, shares);
             let mut frame = stress.clone();
             crosstalk.add(&mut frame);
             let row: f64 = stress[5..10].iter().sum();
             let column = stress[2] + stress[7] + stress[12];
-            assert!((frame[7] - (stress[7] + share * (row + column))).abs() < 1e-12, "{share}");
+            assert!((frame[7] - (stress[7] + shares[0] * row + shares[1] * column)).abs() < 1e-12, "{shares:?}");
             crosstalk.remove(&mut frame);
-            assert!(frame.iter().zip(&stress).all(|(found, &stress)| (found - stress).abs() < 1e-12), "{share}");
+            assert!(frame.iter().zip(&stress).all(|(found, &stress)| (found - stress).abs() < 1e-12), "{shares:?}");
         }
     }
 }

@@ -4,7 +4,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{LOADED, count, largest};
-use crate::crosstalk::Crosstalk;
+use crate::crosstalk::{Crosstalk, Factors};
 use crate::design::Design;
 use crate::numbers::middle;
 
@@ -20,26 +20,32 @@ const ROUNDS: usize = 6;
 const CLEAR: f64 = 3.0;
 /// in this part of the frames,
 const MOST: f64 = 0.75;
-/// from this size on,
+/// and from this size on.
 const LEAST: f64 = 0.003;
-/// and if rows and columns alone have it within this factor.
+/// Rows and columns have the same share if each alone has it within this factor.
 const ALIKE: f64 = 2.0;
 
 /// What the frames of contacts show.
 pub(super) struct Found {
-    /// The share, rounded.
-    pub(super) share: f64,
+    /// Shares of rows and columns, rounded.
+    pub(super) shares: [f64; 2],
     /// What to say of it.
     pub(super) message: String,
+}
+
+/// A share that a frame shows.
+#[derive(Clone, Copy)]
+struct Share {
+    share: f64,
+    error: f64,
 }
 
 /// What one frame shows.
 #[derive(Clone, Copy)]
 struct Estimate {
-    share: f64,
+    both: Share,
     /// Of rows and columns alone.
-    each: Option<[f64; 2]>,
-    error: f64,
+    each: Option<[Share; 2]>,
 }
 
 /// A share that frames of single contacts, values as they are in the file, show and the design does not state.
@@ -52,37 +58,64 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>]) -> Option<Found> {
     let peak = stress.iter().map(|frame| largest(frame)).fold(0.0, f64::max);
     let loaded: Vec<&Vec<f64>> = stress.iter().filter(|frame| peak > 0.0 && largest(frame) >= LOADED * peak).collect();
     let found: Vec<Estimate> = loaded.iter().filter_map(|stress| estimate(design, stress)).collect();
-    let clear = found.iter().filter(|one| (one.share - known).abs() >= CLEAR * one.error).count();
-    if found.len() < FRAMES || (clear as f64) < MOST * found.len() as f64 {
+    if found.len() < FRAMES {
         return None;
     }
-    let share = mean(&found);
-    let each = |axis: usize| middle(found.iter().filter_map(|one| one.each.map(|each| each[axis])));
-    let both = found.iter().any(|one| one.each.is_some());
-    let alike = !both || [each(0), each(1)].iter().all(|each| (share / ALIKE..=share * ALIKE).contains(each));
-    if share < LEAST || !alike || (share - known).abs() < LEAST {
-        return None;
-    }
-    let share = (share * 1e3).round() / 1e3;
-    let reads = |share: f64| Crosstalk::new(&design.sensor, share).under_uniform_pressure();
-    let excess = 100.0 * (reads(share) / reads(known) - 1.0);
-    let (percent, of) = (100.0 * share, count(found.len()));
+    let is_clear = |shares: &[Share], share: f64| {
+        let clear = shares.iter().filter(|one| (one.share - known).abs() >= CLEAR * one.error).count();
+        shares.len() >= FRAMES
+            && clear as f64 >= MOST * shares.len() as f64
+            && share >= LEAST
+            && (share - known).abs() >= LEAST
+    };
+    let both: Vec<Share> = found.iter().map(|one| one.both).collect();
+    let each = [0, 1].map(|axis| found.iter().filter_map(|one| Some(one.each?[axis])).collect::<Vec<Share>>());
+    let share = mean(&both);
+    let shares = if each[0].is_empty() {
+        [share; 2]
+    } else {
+        each.each_ref().map(|each| middle(each.iter().map(|one| one.share)))
+    };
+    let is_equal = shares.iter().all(|each| (share / ALIKE..=share * ALIKE).contains(each));
+    let is_found =
+        if is_equal { is_clear(&both, share) } else { (0..2).any(|axis| is_clear(&each[axis], shares[axis])) };
+    is_found.then_some(())?;
+    let rounded = |share: f64| (share.max(0.0) * 1e3).round() / 1e3;
+    let [row, column] = if is_equal { [rounded(share); 2] } else { shares.map(rounded) };
+    let crosstalk = Crosstalk::of(&design.sensor, [row, column]);
+    let stated = Crosstalk::new(&design.sensor, known);
+    let excess = 100.0 * (crosstalk.under_uniform_pressure() / stated.under_uniform_pressure() - 1.0);
+    let of = count(found.len());
     let has = if known > 0.0 { format!(", and sensor.crosstalk is {known}") } else { String::new() };
     let (size, what) = (excess.abs(), if excess > 0.0 { "large" } else { "small" });
+    let (its_own, remedy) = if is_equal {
+        (String::new(), format!("Write sensor.crosstalk = {row}"))
+    } else {
+        let Factors { row: of_row, column: of_column, total } = crosstalk.factors();
+        let of_frame = if total > 0.0 { format!(", and add {total:.5} of its frame's") } else { String::new() };
+        (
+            format!("{:.1} % ", 100.0 * column),
+            format!(
+                "sensor.crosstalk corrects equal shares alone: lessen it in the read-out, or before `sptfra` reads the frames \
+                 subtract from each taxel {of_row:.4} of its row's sum and {of_column:.4} of its column's{of_frame}"
+            ),
+        )
+    };
     Some(Found {
-        share,
+        shares: [row, column],
         message: format!(
-            "crosstalk: in {of} of single contacts each taxel reads {percent:.1} % of its row and of its column as well{has}; F_z \
-             comes out about {size:.0} % too {what}. Write sensor.crosstalk = {share}"
+            "crosstalk: in {of} of single contacts each taxel reads {:.1} % of its row and {its_own}of its column as well{has}; \
+             F_z comes out about {size:.0} % too {what}. {remedy}",
+            100.0 * row
         ),
     })
 }
 
 /// The mean share by the standard errors, of frames that agree with the middle one.
-fn mean(found: &[Estimate]) -> f64 {
+fn mean(found: &[Share]) -> f64 {
     let centre = middle(found.iter().map(|one| one.share));
     // Without noise a frame's error is next to nothing.
-    let error = |one: &Estimate| one.error.max(LEAST / 10.0);
+    let error = |one: &Share| one.error.max(LEAST / 10.0);
     let (mut sum, mut weights) = (0.0, 0.0);
     for one in found.iter().filter(|one| (one.share - centre).abs() <= CLEAR * error(one)) {
         let weight = error(one).powi(-2);
@@ -128,24 +161,30 @@ fn estimate(design: &Design, stress: &[f64]) -> Option<Estimate> {
         let decay = (near / distance(taxel)).powi(3);
         [1.0, decay, decay * x / distance(taxel), decay * y / distance(taxel)]
     };
-    let mut share = 0.0;
-    let mut result = None;
-    for _ in 0..ROUNDS {
-        let (crosstalk, mut undone) = (Crosstalk::new(sensor, share), stress.to_vec());
-        crosstalk.remove(&mut undone);
-        let [rows, columns] = crosstalk.sums(&undone);
-        let sums = |taxel: usize| [rows[place(taxel)[1]], columns[place(taxel)[0]]];
-        let both_alike = |taxel: usize| [&[sums(taxel).iter().sum()], &tails(taxel)[..]].concat();
-        let (fitted, error) = fit(&read, &far, both_alike)?;
-        let (each, _) = fit(&read, &far, |taxel| [&sums(taxel)[..], &tails(taxel)].concat())?;
-        share = fitted[0].clamp(0.0, 0.2);
-        result = Some(Estimate { share: fitted[0], each: both.then(|| [each[0], each[1]]), error });
-    }
-    result
+    // Both together, or each on its own.
+    let shares = |alike: bool| -> Option<Vec<Share>> {
+        let mut shares = [0.0; 2];
+        let mut found = Vec::new();
+        for _ in 0..ROUNDS {
+            let (crosstalk, mut undone) = (Crosstalk::of(sensor, shares), stress.to_vec());
+            crosstalk.remove(&mut undone);
+            let [rows, columns] = crosstalk.sums(&undone);
+            let terms = |taxel: usize| {
+                let [row, column] = [rows[place(taxel)[1]], columns[place(taxel)[0]]];
+                let sums = if alike { vec![row + column] } else { vec![row, column] };
+                [&sums[..], &tails(taxel)].concat()
+            };
+            found = fit(&read, &far, terms)?;
+            shares = [0, usize::from(!alike)].map(|axis| found[axis].share.clamp(0.0, 0.2));
+        }
+        Some(found)
+    };
+    let (both, each) = (shares(true)?[0], if both { Some(shares(false)?) } else { None });
+    Some(Estimate { both, each: each.map(|each| [each[0], each[1]]) })
 }
 
-/// Least squares of readings at some taxels: factors of the terms, and the standard error of the first.
-fn fit(read: &DVector<f64>, taxels: &[usize], terms: impl Fn(usize) -> Vec<f64>) -> Option<(Vec<f64>, f64)> {
+/// Least squares of readings at some taxels: the factor of each term.
+fn fit(read: &DVector<f64>, taxels: &[usize], terms: impl Fn(usize) -> Vec<f64>) -> Option<Vec<Share>> {
     let rows: Vec<Vec<f64>> = taxels.iter().map(|&taxel| terms(taxel)).collect();
     let count = rows[0].len();
     if rows.len() <= count {
@@ -164,6 +203,9 @@ fn fit(read: &DVector<f64>, taxels: &[usize], terms: impl Fn(usize) -> Vec<f64>)
     let factors = &inverse * (matrix.transpose() * read);
     let left = read - &matrix * &factors;
     let variance = left.norm_squared() / (rows.len() - count) as f64;
-    let error = (variance * inverse[(0, 0)]).max(0.0).sqrt() / lengths[0];
-    Some((factors.iter().zip(&lengths).map(|(factor, length)| factor / length).collect(), error))
+    let of = |term: usize| Share {
+        share: factors[term] / lengths[term],
+        error: (variance * inverse[(term, term)]).max(0.0).sqrt() / lengths[term],
+    };
+    Some((0..count).map(of).collect())
 }

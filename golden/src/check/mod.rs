@@ -23,7 +23,8 @@ use serde::Serialize;
 pub use beyond::{Beyond, beyond};
 pub(crate) use quiet::together;
 
-use crate::design::{Design, Tension};
+use crate::crosstalk::Crosstalk;
+use crate::design::{Design, Input, Tension};
 use crate::matrices::Matrices;
 use crate::numbers::{counted, magnitude};
 use crate::words::print_as_words;
@@ -107,15 +108,35 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
     if let Some(message) = order::swapped(&design.sensor, frames) {
         return vec![Finding { kind: Kind::Order, message }];
     }
-    if let Some(crosstalk::Found { share, message }) = crosstalk::check(design, frames) {
-        // What else is wrong shows without it.
-        let mut corrected = design.clone();
-        corrected.input.crosstalk = share;
-        let mut findings = check_mended(&corrected, frames, matrices);
-        findings.insert(0, Finding { kind: Kind::Crosstalk, message });
-        return findings;
-    }
-    check_mended(design, frames, matrices)
+    let Some(crosstalk::Found { shares: [row, column], message }) = crosstalk::check(design, frames) else {
+        return check_mended(design, frames, matrices);
+    };
+    // What else is wrong shows without it.
+    let mut corrected = design.clone();
+    let mut findings = if row.to_bits() == column.to_bits() {
+        corrected.input.crosstalk = row;
+        check_mended(&corrected, frames, matrices)
+    } else {
+        // Taxels in another order seem to have it on rows or columns alone.
+        corrected.input = Input { dead: design.input.dead.clone(), tension: design.input.tension, ..Input::default() };
+        let crosstalk = Crosstalk::of(&design.sensor, [row, column]);
+        let pascals = |frame: &Vec<f64>| {
+            let mut stress =
+                frame.iter().enumerate().map(|(taxel, &value)| design.input.to_pa(taxel, value)).collect::<Vec<f64>>();
+            crosstalk.remove(&mut stress);
+            stress
+        };
+        let undone: Vec<Vec<f64>> = frames.iter().map(pascals).collect();
+        let is_order = |finding: &Finding| finding.kind == Kind::Order;
+        let mut findings = check_mended(design, frames, matrices);
+        if matrices.is_none() || check_mended(&corrected, &undone, matrices).iter().any(is_order) {
+            return findings;
+        }
+        findings.retain(|finding| !matches!(finding.kind, Kind::Tare | Kind::Order));
+        findings
+    };
+    findings.insert(0, Finding { kind: Kind::Crosstalk, message });
+    findings
 }
 
 fn check_mended(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) -> Vec<Finding> {
