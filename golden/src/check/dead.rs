@@ -2,6 +2,7 @@
 
 use super::largest;
 use crate::design::Design;
+use crate::numbers::{correlation, magnitude};
 
 /// A taxel lies within a contact where those on two opposite sides of it read this share of the frame's peak,
 const WITHIN: f64 = 0.2;
@@ -10,6 +11,12 @@ const OFTEN_WITHIN: f64 = 0.05;
 const OFTEN: f64 = 0.1;
 /// and is dead if it reads less than this share of either: one in the middle of a contact that stays reads the most.
 const LESS: f64 = 0.5;
+/// A row reads noise alone if it stays below this share of those beside it,
+const SILENT: f64 = 0.1;
+/// and is correlated less than this with them,
+const FOLLOWS: f64 = 0.5;
+/// in so many frames.
+const FRAMES: usize = 10;
 /// Names of taxels in a message.
 const NAMED: usize = 8;
 
@@ -39,7 +46,7 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: &[Vec<f64>], c
             || loaded.iter().filter(|frame| beyond(frame, OFTEN_WITHIN)).count() as f64
                 >= (OFTEN * loaded.len() as f64).max(3.0)
     };
-    if let Some(line) = dead_line(design, loaded, &constant) {
+    if let Some(line) = dead_line(design, loaded, clipped, &constant) {
         return Some(line);
     }
     let known = |taxel: &usize| !design.input.dead.contains(taxel);
@@ -59,29 +66,58 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: &[Vec<f64>], c
     })
 }
 
-/// A row or a column within the grid that reads the same in all frames while taxels on both sides of it are pressed.
-fn dead_line(design: &Design, loaded: &[Vec<f64>], constant: &dyn Fn(usize) -> bool) -> Option<String> {
+/// Rows or columns within the grid, one or two side by side, that read the same in all frames, or noise alone, while taxels on
+/// both sides are pressed.
+fn dead_line(design: &Design, loaded: &[Vec<f64>], clipped: bool, constant: &dyn Fn(usize) -> bool) -> Option<String> {
     let (columns, rows) = (design.sensor.columns, design.sensor.rows);
-    let pressed = |taxel: usize, frame: &Vec<f64>| frame[taxel] < -WITHIN * largest(frame);
-    let mut lines = Vec::new();
-    for (what, count, length, steps) in [("row", rows, columns, [columns, 1]), ("column", columns, rows, [1, columns])]
+    let (mut lines, mut noisy) = (Vec::new(), false);
+    for (what, count, length, [across, along]) in
+        [("row", rows, columns, [columns, 1]), ("column", columns, rows, [1, columns])]
     {
-        for line in 1..count.saturating_sub(1) {
-            let taxel = |index: usize| line * steps[0] + index * steps[1];
-            let between = |index: usize| {
-                let [before, after] = [taxel(index) - steps[0], taxel(index) + steps[0]];
-                loaded.iter().any(|frame| pressed(before, frame) && pressed(after, frame))
+        let taxels = |line: usize| (0..length).map(move |index| line * across + index * along);
+        let still = |line: usize| taxels(line).all(constant);
+        let is_known = |line: usize| taxels(line).all(|taxel| design.input.dead.contains(&taxel));
+        let peak = |line: usize| magnitude(loaded.iter().flat_map(|frame| taxels(line).map(|taxel| frame[taxel])));
+        for (first, run) in (1..count).flat_map(|first| [(first, 1), (first, 2)]) {
+            let (before, after) = (first - 1, first + run);
+            if length < 2 || after >= count || (first..after).any(is_known) {
+                continue;
+            }
+            let pressed = |taxel: usize, frame: &Vec<f64>| frame[taxel] < -WITHIN * largest(frame);
+            let sides = |index: usize| [before, after].map(|line| line * across + index * along);
+            let is_between =
+                |&index: &usize| loaded.iter().any(|frame| sides(index).iter().all(|&taxel| pressed(taxel, frame)));
+            let between: Vec<usize> = (0..length).filter(is_between).collect();
+            let goes_with = |one: usize, other: usize| {
+                correlation(loaded.iter().map(|frame| (frame[one], frame[other]))).abs() >= FOLLOWS
             };
-            if length > 1 && (0..length).all(|index| constant(taxel(index))) && (0..length).any(between) {
-                lines.push(format!("{what} {line}"));
+            let is_alone = |line: usize, &index: &usize| {
+                let taxel = line * across + index * along;
+                !sides(index).into_iter().any(|side| goes_with(taxel, side))
+            };
+            let reads_noise = |line: usize| {
+                loaded.len() >= FRAMES
+                    && peak(line) <= SILENT * peak(before).min(peak(after))
+                    && between.iter().all(|index| is_alone(line, index))
+            };
+            let is_still = (first..after).all(still);
+            // Between two contacts two rows that cannot read a pull may read 0 for good, and so do others then.
+            let is_gap = clipped && run > 1 && (0..count).any(|line| !(first..after).contains(&line) && still(line));
+            if !between.is_empty()
+                && !is_gap
+                && (is_still || (first..after).all(|line| still(line) || reads_noise(line)))
+            {
+                lines.extend((first..after).map(|line| format!("{what} {line}")));
+                noisy |= !is_still;
             }
         }
     }
     (!lines.is_empty()).then(|| {
         format!(
-            "{} of the matrix (from 0) reads the same in all frames, with something pressing on both sides: is its wire \
-             broken? So many taxels cannot be replaced: mend it, or leave out that part of the sensor",
-            lines.join(", ")
+            "{} of the matrix (from 0) reads {} in all frames, with something pressing on both sides: is its wire broken? So \
+             many taxels cannot be replaced: mend it, or leave out that part of the sensor",
+            lines.join(", "),
+            if noisy { "nothing but noise" } else { "the same" }
         )
     })
 }

@@ -1,6 +1,6 @@
-//! What a tare under load leaves: the negative print of the contact that lay on the sensor.
+//! What a tare under load leaves, and a baseline that follows the load: the negative print of a contact.
 
-use super::{LOADED, PULLS_TOGETHER, largest, together};
+use super::{LOADED, PULLS_TOGETHER, count, largest, together};
 use crate::design::Design;
 
 /// From so many taxels on no two contacts are opposite by chance.
@@ -11,6 +11,10 @@ const OPPOSITE: f64 = -0.9;
 const WHOLE: f64 = 0.9;
 /// and what lessens it leaves at most this share.
 const LESS: f64 = 0.5;
+/// Where a baseline follows, all that pulls is as opposite to all that presses,
+const FOLLOWS: f64 = -0.7;
+/// and decays: of so many frames that pull, at most one pulls as the largest does.
+const DECAYS: usize = 2;
 
 /// A message where the loaded frame that pulls most is the negative of another, in pascals. So is one that a recording begins
 /// or ends with.
@@ -22,6 +26,10 @@ pub(super) fn check(design: &Design, stress: &[Vec<f64>]) -> Option<String> {
     let most = pull(pulled);
     if most <= 0.0 || pulled.len() < TAXELS {
         return None;
+    }
+    if let Some(message) = follows(design, stress, most).filter(|_| together(&design.sensor, pulled) >= PULLS_TOGETHER)
+    {
+        return Some(message);
     }
     if let Some((pressed, _)) = loaded().find(|(_, frame)| cosine(pulled, frame) < OPPOSITE) {
         return Some(format!(
@@ -44,6 +52,29 @@ pub(super) fn check(design: &Design, stress: &[Vec<f64>]) -> Option<String> {
              the least. Was the sensor tared under a load? Tare it without. If a contact did lie on it then, the sign is wrong: compression must be negative",
             if ends == 2 { ", the first and the last," } else { "" },
             nearest + 1
+        )
+    })
+}
+
+/// A baseline that follows: frames that pull add up to the negative of those that press, by up to `most`, and decay.
+fn follows(design: &Design, stress: &[Vec<f64>], most: f64) -> Option<String> {
+    let (mut sums, mut pulling, mut whole, mut least) =
+        ([vec![0.0; design.sensor.taxels()], vec![0.0; design.sensor.taxels()]], 0, 0, 0.0_f64);
+    for frame in stress {
+        let pull = frame.iter().sum::<f64>();
+        least = least.min(pull);
+        pulling += usize::from(pull >= LOADED * most);
+        whole += usize::from(pull >= WHOLE * most);
+        sums[usize::from(pull > 0.0)].iter_mut().zip(frame).for_each(|(sum, value)| *sum += value);
+    }
+    let is_one = cosine(&sums[0], &sums[1]) < FOLLOWS && least <= -LESS * most && pulling >= DECAYS * whole;
+    is_one.then(|| {
+        format!(
+            "the baseline follows the load: {pulling} of {} pull where others press, by up to {:.0} % of the largest load, and \
+             the pull decays. Forces are wrong as long as it does: switch off the sensor's or driver's drift compensation \
+             (auto-zero, high-pass filter), and tare it once, without load",
+            count(stress.len()),
+            -100.0 * most / least
         )
     })
 }

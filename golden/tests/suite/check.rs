@@ -326,6 +326,18 @@ fn dead_taxels_within_a_contact_are_named() {
     found(&design, &without(&row, 0.0), &[Kind::Dead], &["row 5 of the matrix", "reads the same", "wire broken"]);
     let column: Vec<usize> = (0..10).map(|row| 10 * row + 4).collect();
     found(&design, &without(&column, 0.0), &[Kind::Dead], &["column 4 of the matrix", "leave out that part"]);
+    let rows: Vec<usize> = (40..60).collect();
+    found(&design, &without(&rows, 0.0), &[Kind::Dead], &["row 4, row 5 of the matrix", "reads the same"]);
+    // A row that reads noise of 1 % of the peak.
+    let peak = frames.iter().flatten().fold(0.0_f64, |peak, pa| peak.max(pa.abs()));
+    let noise = |frame: usize, taxel: usize| f64::from(((frame * 7919 + taxel * 104_729) % 1601) as u32) / 800.0 - 1.0;
+    for rows in [50..60, 40..60] {
+        let mut noisy = frames.clone();
+        for (number, frame) in noisy.iter_mut().enumerate() {
+            rows.clone().for_each(|taxel| frame[taxel] = 0.01 * peak * noise(number, taxel));
+        }
+        found(&design, &noisy, &[Kind::Dead], &["row 5 of the matrix (from 0) reads nothing but noise"]);
+    }
     // One far from the contact may well read nothing, and the design knows of this one.
     found(&design, &without(&[0], 0.0), &[], &[]);
     design.input.dead = vec![44];
@@ -533,4 +545,34 @@ fn a_tare_under_load_is_named() {
     found(&design, &less(&elsewhere, &at(1.0)), &[Kind::Tare], &["more loaded than others"]);
     // The same touch with the other sign begins and ends at 0.
     found(&design, &changed(&touch, |pa| -pa), &[Kind::Sign], &["compression must be negative"]);
+}
+
+/// A zero that creeps toward the load, with a time constant in frames: contacts one after the other, at several places.
+#[test]
+fn a_baseline_that_follows_is_named() {
+    let design = design("sensor1-fast");
+    let mut scene = Scene::standing(&design.sensor);
+    scene.sensor_errors = SensorErrors { seed: 3, noise: 0.002, ..SensorErrors::default() };
+    let right = scene.contacts[0].centre_m[0];
+    let places: Vec<Vec<f64>> = [1.0, 0.4, 0.7]
+        .map(|share| {
+            scene.contacts[0].centre_m[0] = share * right;
+            stress(&design, &scene).remove(0)
+        })
+        .to_vec();
+    let rest = vec![0.0; design.sensor.taxels()];
+    for (constant, hold, pause) in [(20.0, 40, 40), (30.0, 60, 10), (40.0, 20, 30), (60.0, 60, 40)] {
+        let touches = (0..6).flat_map(|touch| [vec![&rest; pause], vec![&places[touch % places.len()]; hold]].concat());
+        let true_load: Vec<&Vec<f64>> = touches.chain(vec![&rest; pause]).collect();
+        found(&design, &true_load.iter().map(|&frame| frame.clone()).collect::<Vec<_>>(), &[], &[]);
+        let mut baseline = rest.clone();
+        let follow = |frame: &&Vec<f64>| -> Vec<f64> {
+            let read = frame.iter().zip(&baseline).map(|(load, baseline)| load - baseline).collect::<Vec<f64>>();
+            baseline.iter_mut().zip(&read).for_each(|(baseline, read)| *baseline += read / constant);
+            read
+        };
+        let frames: Vec<Vec<f64>> = true_load.iter().map(follow).collect();
+        let words = ["the baseline follows the load", "auto-zero", "without load"];
+        found(&design, &frames, &[Kind::Tare], &words);
+    }
 }
