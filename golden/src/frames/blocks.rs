@@ -114,9 +114,7 @@ pub(super) fn join<'a>(
     let is_row = |line: &&Line| line.row.as_ref().is_some_and(|row| row.len() == columns) && Some(line.content) != head;
     let others = all.iter().filter(is_row).count();
     let is_numbered = head.is_some() && others > 0 && others.is_multiple_of(rows);
-    if is_numbered {
-        all.iter_mut().filter(|line| Some(line.content) == head).for_each(|line| line.row = None);
-    }
+    all.iter_mut().filter(|line| is_numbered && Some(line.content) == head).for_each(|line| line.row = None);
     if end.is_some() {
         keep_width(&mut all, columns, layout.skip_bad).map_err(|(line, problem)| wrong(line, problem))?;
     }
@@ -127,6 +125,7 @@ pub(super) fn join<'a>(
     if !target.counts {
         one_unit(&all, unit.as_ref()).map_err(|(line, problem)| wrong(line, problem))?;
     }
+    all = parted(all, columns, rows, if is_labelled { 0 } else { layout.labels });
     let (mut frames, mut run) = (Vec::new(), Vec::new());
     let last = all.iter().rposition(|line| !line.content.is_empty()).map_or(0, |last| last + 1);
     all.truncate(last);
@@ -219,6 +218,31 @@ fn behind_labels<'a>(mut lines: Vec<Line<'a>>, numbers: &Sensor, rows: usize) ->
         first.iter().all(|label| no_number(label)) && (1..rows).all(|row| !first[..row].contains(&first[row]));
     let are_labels = (counts(0) || counts(1) || are_words) && labels.iter().all(|label| first.contains(label));
     are_labels.then_some(lines)
+}
+
+/// Lines with a blank one where a label changes that most frames have on all of their rows, as the number of the frame: a row
+/// that is lost shifts no other into its place.
+fn parted<'a>(all: Vec<Line<'a>>, columns: usize, rows: usize, labels: usize) -> Vec<Line<'a>> {
+    let label = |line: &Line<'a>, at: usize| {
+        line.row.as_ref().filter(|row| row.len() == columns)?;
+        Separator::of(line.content).split(line.content).get(at).copied()
+    };
+    let is_of_frames = |&at: &usize| {
+        let of: Vec<&[u8]> = all.iter().filter_map(|line| label(line, at)).collect();
+        let (whole, others): (Vec<_>, Vec<_>) = of.chunk_by(|a, b| a == b).partition(|frame| frame.len() == rows);
+        whole.len() >= others.len() && whole.len() > 1
+    };
+    let Some(at) = (0..labels).find(is_of_frames) else { return all };
+    let (mut lines, mut before) = (Vec::new(), None);
+    for line in all {
+        let this = label(&line, at);
+        if this.is_some() && before.is_some() && this != before {
+            lines.push(Line { number: line.number, content: b"", row: None, label: None });
+        }
+        before = this.or(before);
+        lines.push(line);
+    }
+    lines
 }
 
 /// Refuses rows of another number of cells than the first, or leaves them out: columns of values stay where they are only if

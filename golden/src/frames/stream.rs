@@ -4,15 +4,17 @@ use std::path::Path;
 
 use super::FrameError;
 use super::layout::{Layout, Target};
-use super::text::Lines;
+use super::text::{Label, Lines};
 use crate::design::{Design, Samples};
 
 /// Makes frames of lines of text, one after the other.
 #[derive(Clone, Debug)]
 pub struct FrameLines {
     lines: Lines,
-    /// Whether a frame was there.
-    begun: bool,
+    /// Frames that were there.
+    frames: usize,
+    /// Whether the label of one of them was no number.
+    has_words: bool,
     samples: Samples,
     /// Fields of a row of the grid.
     columns: usize,
@@ -25,7 +27,7 @@ impl FrameLines {
         let layout = layout.into();
         let lines = Lines::new(origin, &layout, &Target::from(design));
         let columns = layout.first() + design.sensor.columns;
-        Self { lines, columns, begun: false, samples: design.hardware.samples }
+        Self { lines, columns, frames: 0, has_words: false, samples: design.hardware.samples }
     }
 
     /// The error of a line, which may hold a row of the grid.
@@ -62,8 +64,21 @@ impl FrameLines {
         }
         let Some(frame) = self.lines.row(line).map_err(|error| self.of_row(error))? else { return Ok(None) };
         self.lines.unclear()?;
-        if !std::mem::replace(&mut self.begun, true) && self.lines.is_numbered(&frame) {
+        self.frames += 1;
+        if self.frames == 1 && self.lines.is_numbered(&frame) {
             return Ok(None);
+        }
+        let number = self.lines.cells.number;
+        match self.lines.label(line).0 {
+            Label::Word if !self.has_words && self.frames > 2 => {
+                let problem = "a word where the lines before have a number, such as a mean or a total: take the line out, or \
+                               give frames a number";
+                let path = self.lines.cells.path.clone();
+                return self
+                    .lines
+                    .leave_out(number, FrameError::Shape { path, line: number, problem: problem.to_owned() });
+            }
+            label => self.has_words |= label != Label::Number,
         }
         let wrong = frame.iter().position(|&value| !self.samples.takes(value));
         let Some(column) = wrong else { return Ok(Some(frame)) };

@@ -112,6 +112,20 @@ impl Lines {
         of_header.or_else(|| labels.chunks(1).chain(labels.windows(2)).find_map(text))
     }
 
+    /// What the first label of a row is, and the time of its labels.
+    pub(super) fn label(&self, line: &[u8]) -> (Label, Option<f64>) {
+        let separator = self.cells.separator.unwrap_or(Separator::Spaces);
+        let fields = separator.split(separator.trim(line));
+        let time = self.time(fields.get(..self.labels()).unwrap_or_default());
+        let label = match fields.first() {
+            Some(label) if self.labels() > 0 && time.is_none() && separator::number(label).is_none() => {
+                if is_unknown(&String::from_utf8_lossy(label)) { Label::Blank } else { Label::Word }
+            }
+            _ => Label::Number,
+        };
+        (label, time)
+    }
+
     /// The frame of the next line. Nothing for a blank one, for one that begins with #, for lines of names and units.
     pub(super) fn row(&mut self, line: &[u8]) -> Result<Option<Vec<f64>>, FrameError> {
         let (content, separator) = match self.cells.line(line)? {
@@ -343,15 +357,8 @@ pub(super) fn read(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
     let mut labels: Vec<Label> = Vec::new();
     for line in separator::lines(bytes) {
         let Some(row) = lines.row(line)? else { continue };
-        let separator = lines.cells.separator.unwrap_or(Separator::Spaces);
-        let fields = separator.split(separator.trim(line));
-        let time = lines.time(fields.get(..lines.labels()).unwrap_or_default());
-        labels.push(match fields.first() {
-            Some(label) if lines.labels() > 0 && time.is_none() && separator::number(label).is_none() => {
-                if is_unknown(&String::from_utf8_lossy(label)) { Label::Blank } else { Label::Word }
-            }
-            _ => Label::Number,
-        });
+        let (label, time) = lines.label(line);
+        labels.push(label);
         text.times.push(time.unwrap_or(f64::NAN));
         text.rows.push(row);
         text.lines.push(lines.cells.number);

@@ -101,3 +101,17 @@ fn blocks_with_columns_have_rows_of_one_width() {
     refused(read(text, layout(false)), &["line 4", "6 cells where the first row of the blocks has 5"]);
     assert_eq!(read(text, layout(true)).unwrap().skipped, [1]);
 }
+
+/// The number of its frame and a time before each row.
+#[test]
+fn rows_behind_the_number_of_their_frame() {
+    let text = "frame,t,a,b,c\n7,0.00,-7.5,-1,0\n7,0.01,2,-3,5\n8,0.02,-8,-2,1\n8,0.03,0.5,-4,6\n";
+    both(read(text, 2));
+    both(read(&text.replace(",0.01", ",0.00"), 2));
+    both(read(&text.replace("8,0.02", "\n8,0.02"), 2));
+    // Rows of two frames are lost.
+    let more = format!("{text}9,0.04,1,2,3\n10,0.05,4,5,6\n");
+    refused(read(&more, 2), &["line 7", "a block of 1 row ends here where the sensor has 2"]);
+    let some = read(&more, Layout { labels: 2, skip_bad: true, ..Layout::default() });
+    assert_eq!(both(some).skipped, [2, 3]);
+}

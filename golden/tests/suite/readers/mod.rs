@@ -125,6 +125,17 @@ fn means_below_the_frames_are_none() {
             "{remark}"
         );
     }
+    // Of a stream, which has no end yet, a line to refuse or to leave out.
+    for skip_bad in [false, true] {
+        let mut stream =
+            FrameLines::new(Path::new("port"), &pad(""), Layout { labels: 1, skip_bad, ..Layout::default() });
+        let mut next = |line: &str| stream.frame(line.as_bytes()).map_err(|error| error.to_string());
+        assert!(frames.lines().all(|line| next(line).unwrap().is_some()));
+        let mean = next("mean,1,2,3,4,5,6");
+        let said = "port, line 3: a word where the lines before have a number";
+        assert!(mean.map_or_else(|error| !skip_bad && error.contains(said), |frame| skip_bad && frame.is_none()));
+        assert!(next("2,-7.5,-1,0,2,-3,5").unwrap().is_some());
+    }
     assert_eq!(read(&format!("{frames},1,2,3,4,5,6\n"), 1).unwrap().frames.len(), 3);
     // A mark on some lines only is no number.
     let marked = frames.replace("0,-7.5", ",-7.5").replace("1,-8", ",-8") + "release,1,2,3,4,5,6\n";
