@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use crate::designs::folders;
+use golden::calibrate::recorded::{read_forces, read_pressures};
 use golden::design::Design;
 use golden::forces::read_outcomes;
-use golden::frames::{Frames, read_recording, write_frames};
+use golden::frames::{FrameLines, Frames, read_recording, write_frames};
 use golden::scene::Scene;
 
 use proptest::prelude::*;
@@ -188,24 +189,36 @@ proptest! {
         }
     }
 
+    /// A line each, or a line for each row; as a file, in UTF-16, and line by line.
     #[test]
     fn damaged_frames_are_read_or_refused(
         rows in prop::collection::vec(prop::collection::vec(-1e6..1e6_f64, 4), 1..5),
         changes in changes(),
         labels in 0..3_usize,
         header in prop::sample::select(&HEADERS[..]),
+        between in prop::sample::select(&[",", "\n", "\n1,0.5,", " "][..]),
+        is_wide in any::<bool>(),
     ) {
-        let lines: Vec<String> =
-            rows.iter().map(|row| row.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")).collect();
+        let [inner, end] = if between.contains('\n') { [",", "\n\n"] } else { [between, "\n"] };
+        let row = |row: &Vec<f64>| format!("{}{inner}{}{between}{}{inner}{}", row[0], row[1], row[2], row[3]);
+        let text = changed(&(header.to_owned() + &rows.iter().map(row).collect::<Vec<_>>().join(end)), &changes);
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("fuzzed.csv");
-        fs::write(&path, changed(&(header.to_owned() + &lines.join("\n")), &changes)).expect("writable");
+        let wide = || format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect();
+        fs::write(&path, if is_wide { wide() } else { text.clone().into_bytes() }).expect("writable");
         match read_recording(&path, &four(), labels) {
             Ok(Frames { frames, .. }) => {
                 prop_assert!(frames.iter().all(|frame| frame.len() == 4));
                 prop_assert!(frames.iter().flatten().all(|value| value.is_finite()));
             }
             Err(error) => prop_assert!(is_a_message(&error.to_string()), "{}", error),
+        }
+        let mut lines = FrameLines::new(&path, &four(), labels);
+        for line in text.split_inclusive('\n') {
+            match lines.frame(line.as_bytes()) {
+                Ok(frame) => prop_assert!(frame.is_none_or(|frame| frame.len() == 4 && frame.iter().all(|value| value.is_finite()))),
+                Err(error) => prop_assert!(is_a_message(&error.to_string()), "{}", error),
+            }
         }
     }
 
@@ -246,6 +259,20 @@ proptest! {
     }
 
     #[test]
+    fn damaged_tables_are_read_or_refused(changes in changes(), is_timed in any::<bool>()) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("fuzzed.csv");
+        let forces = if is_timed { "t (s),F_x (N),F_z (N)\n0,0.5,-1\n0.1,,-2\n0.2,1,-3\n" } else { "F_z\n-1\n-2\n-3\n" };
+        let pressures = if is_timed { "t (ms);p (kPa)\n0;1,5\n10;2\n20;3,25\n" } else { "-1000\n-2000\n\n-3000\n" };
+        for (text, read) in [(forces, read_forces as fn(&Path) -> _), (pressures, read_pressures)] {
+            fs::write(&path, changed(text, &changes)).expect("writable");
+            if let Err(error) = read(&path) {
+                prop_assert!(is_a_message(&error.to_string()), "{}", error);
+            }
+        }
+    }
+
+    #[test]
     fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("fuzzed");
@@ -255,6 +282,9 @@ proptest! {
             Scene::load(&path).err().map(|error| error.to_string()),
             read_recording(&path, &four(), 0).err().map(|error| error.to_string()),
             read_outcomes(&path, 1).err().map(|error| error.to_string()),
+            read_forces(&path).err().map(|error| error.to_string()),
+            read_pressures(&path).err().map(|error| error.to_string()),
+            FrameLines::new(&path, &four(), 0).frame(&bytes).err().map(|error| error.to_string()),
         ];
         for error in errors.into_iter().flatten() {
             prop_assert!(is_a_message(&error), "{error}");
