@@ -3,7 +3,7 @@
 """Estimators of the tangential force under noise, compared: estimator_study.py SPTFRA OUT.csv
 
 Contacts that no training draws, from `sptfra scene`, with noise of 0.2 to 2 % of the largest reading. Beside the
-shipped designs stand candidates that are trained here, a parametric fit, and the Cramér-Rao bound. Takes ten minutes.
+shipped designs stand candidates that are trained here, and a parametric fit. Takes ten minutes.
 """
 
 import hashlib
@@ -377,20 +377,6 @@ class Parametric:
         (_, hertz, rest), (_, disc, other) = (self.fit(frames, steps, shape) for shape in (0, 1))
         return errors(np.where((other < rest)[:, None], disc, hertz)[:, 1:], truth)
 
-    def bound(self, frames, share, random):
-        """Errors of an efficient estimator (Cramér-Rao), drawn; the seed's parity says the shape."""
-        found = []
-        for shape in (0, 1):
-            of_shape = frames[shape::2]
-            place, force, _ = self.fit(of_shape, 60, shape)
-            slopes = self.slopes(shape, place, force)
-            covariance = np.linalg.inv(np.einsum("nti,ntj->nij", slopes, slopes))[:, 1:3, 1:3]
-            spread = share * np.abs(of_shape).max(1)[:, None] / np.abs(force[:, :1])
-            drawn = random.standard_normal((len(force), 400, 2))
-            drawn = np.einsum("nij,nkj->nki", np.linalg.cholesky(covariance), drawn)
-            found.append((100 * spread * np.hypot(drawn[..., 0], drawn[..., 1])).ravel())
-        return np.concatenate(found)
-
 
 def errors(found, truth):
     """Length of the error of (F_x, F_y) in percent of the normal force."""
@@ -419,7 +405,7 @@ HEAD = """\
 # Estimators of the tangential force under noise: error in percent of the normal force.
 # {contacts} contacts of a kind at a friction of 0.5, {draws} draws of noise each, none of them drawn by a training.
 # noise: standard deviation in percent of the largest reading of a frame. Trained at a noise up to {noise:.0%}.
-# bound: errors of an efficient estimator (Cramér-Rao). fast, wide: the shipped designs.
+# fast, wide: the shipped designs. The bound (Cramér-Rao) is in noise.csv.
 # search: the grid search with {units} hidden units, trained as those below; high-noise: at {half:.1%} to {noise:.0%} only.
 # wiener: an inverse regularised for the noise in place of C33^-1; wiener-strong: 25 times more.
 # dead-zone: of two deviations of the noise. both: features of C33^-1 and of wiener-strong.
@@ -472,9 +458,6 @@ def main() -> None:
                 if kind != "sliding":
                     sets = {1.0: sets[1.0]}
                 for noise, of in sets.items():
-                    if kind == "sliding":
-                        drawn = parametric.bound(frames, 0.01 * noise, np.random.default_rng(4))
-                        row(sensor, kind, "bound", noise, drawn)
                     row(sensor, kind, "parametric", noise, parametric.errors(*of, 2))
                     for estimator, design in designs.items():
                         row(sensor, kind, estimator, noise, solved(sptfra, design, *of, folder))

@@ -217,15 +217,11 @@ def noise():
         for sigma in (0, 0.5, 1, 1.5, 2):
             parts.append(text(x(sigma), bottom + 18, f"{sigma:g}", "middle", size=12))
         parts.append(text(x0 + 150, bottom + 40, "noise, % of the frame's largest reading", "middle", size=12))
-        bound = next(
-            float(row["median"])
-            for row in rows("estimator-study.csv")
-            if (row["sensor"], row["kind"], row["estimator"], row["noise"]) == (sensor, "sliding", "bound", "1")
-        )
-        parts.append(line(x(0), y(0), x(2), y(2 * bound), COLOURS[0], 2))
         for index in range(2):
             design = f"sensor{sensor}-{designs[index]}"
             points = [row for row in rows("noise.csv") if row["design"] == design]
+            if index == 0:
+                parts.append(line(x(0), y(0), x(2), y(points[-1]["bound"]), COLOURS[0], 2))
             for kind, dash in (("median", ""), ("p95", ' stroke-dasharray="2 3"')):
                 path = " ".join(f"{x(row['noise']):.1f},{y(row[kind]):.1f}" for row in points)
                 colour = COLOURS[index + 1]

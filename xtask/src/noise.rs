@@ -5,7 +5,7 @@ use std::ops::{Range, RangeInclusive};
 
 use golden::design::Design;
 use golden::metrics::Quantiles;
-use golden::scene::{Kind, SceneError, SceneFrame, normal};
+use golden::scene::{Kind, SceneError, SceneFrame, bound, normal};
 use golden::smoothing::{Average, Smoothing};
 use golden::solver::{Solver, SolverError};
 use rand::SeedableRng;
@@ -40,9 +40,6 @@ pub enum NoiseError {
     /// A step of load that does not tell creep.
     #[error("{0}")]
     Creep(String),
-    /// Another sensor than the paper's.
-    #[error("{0}: no bound is known; name designs of the paper's sensors")]
-    Bound(String),
 }
 
 /// What the design's sensor reads of stresses in pascals, with noise in percent of the largest reading.
@@ -108,16 +105,15 @@ fn smoothed(design: &Design, frames: &[SceneFrame], percent: f64) -> Result<Vec<
 /// The columns of [`smoothing_rows`].
 pub const SMOOTHING_COLUMNS: &str = "design,noise,k,frames,median,p95,bound";
 
-/// The table of smoothing of some designs of the paper's sensors, each with the bound of its sensor: the median error of the best
-/// estimator over the noise.
+/// The table of smoothing of some designs, each with the bound of the median error on its sensor.
 ///
 /// # Errors
 ///
-/// [`NoiseError`]: a sensor without matrices, scenes or bound.
+/// [`NoiseError`]: a sensor without matrices or scenes.
 pub fn smoothing_rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
     let mut text = String::new();
     for (name, design) in designs {
-        let bound = bound(design).ok_or_else(|| NoiseError::Bound(name.clone()))?;
+        let [bound, _] = bound(&design.sensor, FRICTION, SEEDS)?;
         let frames = Kind::Sliding.frames(&design.sensor, FRICTION, SEEDS)?;
         for percent in SMOOTHED_PERCENT {
             for (k, Quantiles { median, most, .. }) in SMOOTHING.zip(smoothed(design, &frames, percent)?) {
@@ -130,21 +126,10 @@ pub fn smoothing_rows(designs: &[(String, Design)]) -> Result<String, NoiseError
     Ok(text)
 }
 
-/// The bound of a sensor of the paper: median error of the best unbiased estimator, in percent of the normal force at a noise
-/// of 1 %.
-///
-/// Cramér-Rao bound of such contacts as [`SEEDS`] draws, of unknown place, size, force and direction
-/// (`results/estimator-study.csv`).
-fn bound(design: &Design) -> Option<f64> {
-    let bounds = [([4.0, 2.0], 3.66), ([4.0, 4.0], 4.50)];
-    let is = |pitch_mm: [f64; 2]| pitch_mm.map(f64::to_bits) == design.sensor.pitch_mm.map(f64::to_bits);
-    bounds.into_iter().find(|(pitch_mm, _)| is(*pitch_mm) && design.sensor.taxels() == 100).map(|(_, bound)| bound)
-}
-
 /// The columns of [`rows`].
-pub const COLUMNS: &str = "design,noise,median,p95,worst";
+pub const COLUMNS: &str = "design,noise,median,p95,worst,bound,bound_p95";
 
-/// The table of some designs, which go by the names of their files.
+/// The table of some designs, which go by the names of their files, each with the bound of median and 95 % on its sensor.
 ///
 /// # Errors
 ///
@@ -153,10 +138,12 @@ pub fn rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
     let mut text = String::new();
     for (name, design) in designs {
         let frames = Kind::Sliding.frames(&design.sensor, FRICTION, SEEDS)?;
+        let bound = bound(&design.sensor, FRICTION, SEEDS)?;
         for percent in NOISE_PERCENT {
+            let [bound, bound_most] = bound.map(|error| percent * error);
             let Quantiles { median, most, worst } = errors(design, &frames, percent)?;
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "{name},{percent},{median:.1},{most:.1},{worst:.1}");
+            let _ = writeln!(text, "{name},{percent},{median:.1},{most:.1},{worst:.1},{bound:.2},{bound_most:.2}");
         }
     }
     Ok(text)

@@ -3,6 +3,7 @@
 //! The elastic models here are those of a layer or of loads with an extent, not the estimator's own.
 
 mod bessel;
+mod bound;
 mod choice;
 mod field;
 mod green;
@@ -19,6 +20,7 @@ mod transfer;
 use std::borrow::Cow;
 use std::path::Path;
 
+pub use bound::bound;
 pub use choice::ChoiceError;
 pub use kind::Kind;
 pub use sensor_errors::normal;
