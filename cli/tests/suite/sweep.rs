@@ -211,7 +211,13 @@ fn the_page_needs_nothing_else() {
         assert!(!without_names.contains(foreign), "{foreign}");
     }
     assert_eq!(page.matches("<svg").count(), page.matches("</svg>").count());
-    for part in ["prefers-color-scheme: dark", "Scene push", "4 frames", "recommended: no filter"] {
+    for part in [
+        "prefers-color-scheme: dark",
+        "Scene push",
+        "4 frames",
+        "recommended: no filter",
+        "finds the expected error of",
+    ] {
         assert!(page.contains(part), "{part}");
     }
 }

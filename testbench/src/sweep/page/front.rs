@@ -39,6 +39,11 @@ pub fn legend(points: &[Point]) -> Vec<(&'static str, &'static str)> {
     named.filter(|&(_, colour)| points.iter().any(|point| colour_of(point) == colour)).collect()
 }
 
+/// A colour for each of several lines.
+pub(super) fn colour(index: usize) -> &'static str {
+    KINDS[index % KINDS.len()].1
+}
+
 fn colour_of(point: &Point) -> &'static str {
     KINDS.iter().find(|(.., is)| is(point)).map_or(INK, |&(_, colour, _)| colour)
 }
@@ -53,11 +58,10 @@ pub fn front(points: &[&Point], tells: bool) -> String {
         .filter(|point| Some(bits(point)) == widest)
         .filter_map(|&point| Some((point, point.hardware.as_ref()?)))
         .collect();
-    let x = Axis::covering(built.iter().map(|(_, hardware)| hardware.latency_us), LEFT, WIDTH - RIGHT);
-    let y = Axis::covering(PERCENT.into_iter(), HEIGHT - BOTTOM, TOP);
+    let latencies: Vec<f64> = built.iter().map(|(_, hardware)| hardware.latency_us).collect();
+    let titles = ["latency, µs (logarithmic); left is faster", "largest error of F_x and F_y, %; lower is more exact"];
+    let (mut svg, x, y) = plot("Largest tangential error against latency", [&latencies, &PERCENT], None, titles);
     let height = |percent: f64| y.place(percent.clamp(PERCENT[0], PERCENT[1]));
-    let mut svg = Svg::new(WIDTH, HEIGHT, "Largest tangential error against latency");
-    axes(&mut svg, x, y);
     if tells {
         let mut best: Vec<(f64, f64)> =
             built.iter().map(|(point, hardware)| (hardware.latency_us, point.tangential())).collect();
@@ -105,8 +109,17 @@ fn frontier(points: &mut [(f64, f64)]) -> Vec<(f64, f64)> {
         .collect()
 }
 
-fn axes(svg: &mut Svg, x: Axis, y: Axis) {
-    for value in x.marks(&[1.0]) {
+/// An empty plot with logarithmic axes that cover these values; with marks along x at powers of ten, or where they are given.
+pub(super) fn plot(
+    label: &str,
+    [along_x, along_y]: [&[f64]; 2],
+    marks: Option<&[f64]>,
+    [below, above]: [&str; 2],
+) -> (Svg, Axis, Axis) {
+    let x = Axis::covering(along_x.iter().copied(), LEFT, WIDTH - RIGHT);
+    let y = Axis::covering(along_y.iter().copied(), HEIGHT - BOTTOM, TOP);
+    let mut svg = Svg::new(WIDTH, HEIGHT, label);
+    for value in marks.map_or_else(|| x.marks(&[1.0]).collect(), <[f64]>::to_vec) {
         svg.grid((x.place(value), y.from), (x.place(value), y.to));
         svg.text((x.place(value), y.from + 18.0), "middle", INK, &format!("{value}"));
     }
@@ -114,9 +127,9 @@ fn axes(svg: &mut Svg, x: Axis, y: Axis) {
         svg.grid((x.from, y.place(value)), (x.to, y.place(value)));
         svg.text((x.from - 8.0, y.place(value) + 4.0), "end", INK, &format!("{value}"));
     }
-    let below = (f64::midpoint(x.from, x.to), HEIGHT - 42.0);
-    svg.text(below, "middle", INK, "latency, µs (logarithmic); left is faster");
-    svg.text((6.0, 14.0), "start", INK, "largest error of F_x and F_y, %; lower is more exact");
+    svg.text((f64::midpoint(x.from, x.to), HEIGHT - 42.0), "middle", INK, below);
+    svg.text((6.0, 14.0), "start", INK, above);
+    (svg, x, y)
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use crate::sweep::{SweepError, frames_of_kinds};
 
 /// Those of the unfiltered designs with hardware that answer differently: another plan or more lanes change a digit at most,
 /// and of such designs only the first by the reduced plan is shown.
-fn distinct<'a>(designs: &[&'a Design]) -> Vec<&'a Design> {
+pub(super) fn distinct<'a>(designs: &[&'a Design]) -> Vec<&'a Design> {
     let shows = |design: &&Design| design.algorithm.filter == Filter::None && Plan::new(design).is_ok();
     let shown: Vec<&Design> = designs.iter().copied().filter(shows).collect();
     let same = |a: &Design, b: &Design| {

@@ -1,5 +1,6 @@
 //! The page of a sweep: one HTML file without a network, with pictures as SVG, for light and dark.
 
+mod averaged;
 pub mod conclusion;
 pub mod front;
 mod kinds;
@@ -54,6 +55,7 @@ struct SensorSection {
     /// The recommended design as files, the design's own the last.
     recommended: Vec<(String, String)>,
     scenes: Vec<SceneSection>,
+    averaged: averaged::Section,
     kinds: Option<Table>,
 }
 
@@ -125,6 +127,7 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
         conclusion: conclusion::conclusion(&own, &telling),
         recommended: recommended_design(recommended, &foremost, sweep).as_ref().map(files_of).unwrap_or_default(),
         scenes: scenes.iter().map(|scene| of_scene(scene, &own)).collect(),
+        averaged: averaged::section(&foremost)?,
         kinds: kinds::table(&foremost, sweep.kinds)?,
     })
 }
