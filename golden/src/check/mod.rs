@@ -132,7 +132,7 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
         if matrices.is_none() || check_mended(&corrected, &undone, matrices).iter().any(is_order) {
             return findings;
         }
-        findings.retain(|finding| !matches!(finding.kind, Kind::Tare | Kind::Order));
+        findings.retain(|finding| !matches!(finding.kind, Kind::Tare | Kind::Order | Kind::Contacts));
         findings
     };
     findings.insert(0, Finding { kind: Kind::Crosstalk, message });
@@ -291,8 +291,8 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
         found(Kind::Stuck, message);
     }
     // Frames that are wrong in these ways seem to have contacts that nobody pressed.
-    let misread =
-        pascals || findings.iter().any(|finding| matches!(finding.kind, Kind::Sign | Kind::Tare | Kind::Order));
+    let misread = pascals
+        || findings.iter().any(|finding| matches!(finding.kind, Kind::Sign | Kind::Tare | Kind::Dead | Kind::Order));
     let frames: Vec<&Vec<f64>> =
         frames.iter().zip(&is_loaded).filter_map(|(frame, &loaded)| loaded.then_some(frame)).collect();
     if let Some(message) = matrices.filter(|_| !misread).and_then(|matrices| contacts::check(design, &frames, matrices))

@@ -328,6 +328,12 @@ fn dead_taxels_within_a_contact_are_named() {
     found(&design, &without(&column, 0.0), &[Kind::Dead], &["column 4 of the matrix", "leave out that part"]);
     let rows: Vec<usize> = (40..60).collect();
     found(&design, &without(&rows, 0.0), &[Kind::Dead], &["row 4, row 5 of the matrix", "reads the same"]);
+    // It makes two contacts of one.
+    let counting = Design {
+        algorithm: golden::design::Algorithm { count_contacts: true, ..design.algorithm.clone() },
+        ..design.clone()
+    };
+    found(&counting, &without(&rows, 0.0), &[Kind::Dead], &[]);
     // A row that reads noise of 1 % of the peak.
     let peak = frames.iter().flatten().fold(0.0_f64, |peak, pa| peak.max(pa.abs()));
     let noise = |frame: usize, taxel: usize| f64::from(((frame * 7919 + taxel * 104_729) % 1601) as u32) / 800.0 - 1.0;
