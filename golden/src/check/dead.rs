@@ -66,45 +66,65 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: &[Vec<f64>], c
     })
 }
 
-/// Rows or columns within the grid, one or two side by side, that read the same in all frames, or noise alone, while taxels on
-/// both sides are pressed.
+/// Rows or columns, one or two side by side, that read the same in all frames, or noise alone, while taxels beside them are
+/// pressed; or two that read what the other does.
 fn dead_line(design: &Design, loaded: &[Vec<f64>], clipped: bool, constant: &dyn Fn(usize) -> bool) -> Option<String> {
     let (columns, rows) = (design.sensor.columns, design.sensor.rows);
     let (mut lines, mut noisy) = (Vec::new(), false);
     for (what, count, length, [across, along]) in
         [("row", rows, columns, [columns, 1]), ("column", columns, rows, [1, columns])]
     {
-        let taxels = |line: usize| (0..length).map(move |index| line * across + index * along);
+        let place = |line: usize, index: usize| line * across + index * along;
+        let taxels = |line: usize| (0..length).map(move |index| place(line, index));
         let still = |line: usize| taxels(line).all(constant);
         let is_known = |line: usize| taxels(line).all(|taxel| design.input.dead.contains(&taxel));
         let peak = |line: usize| magnitude(loaded.iter().flat_map(|frame| taxels(line).map(|taxel| frame[taxel])));
-        for (first, run) in (1..count).flat_map(|first| [(first, 1), (first, 2)]) {
-            let (before, after) = (first - 1, first + run);
-            if length < 2 || after >= count || (first..after).any(is_known) {
+        let pressed = |taxel: usize, frame: &Vec<f64>| frame[taxel] < -WITHIN * largest(frame);
+        let are_equal = |one: usize, other: usize| {
+            loaded
+                .iter()
+                .all(|frame| taxels(one).zip(taxels(other)).all(|(a, b)| frame[a].total_cmp(&frame[b]).is_eq()))
+        };
+        // Of a contact in the middle between them, without noise, those on either side are equal too.
+        let are_bridged = |one: usize| are_equal(one, one + 1) && !still(one) && !are_equal(one - 1, one + 2);
+        if let Some(one) = (1..count.saturating_sub(2)).find(|&one| length > 1 && loaded.len() > 1 && are_bridged(one))
+        {
+            return Some(format!(
+                "{what} {one} and {what} {} of the matrix (from 0) read the same in all frames: are their wires connected, or is \
+                 one a copy of the other? Mend it, or leave out that part of the sensor",
+                one + 1
+            ));
+        }
+        for (first, run) in (0..count).flat_map(|first| [(first, 1), (first, 2)]) {
+            let after = first + run;
+            let sides = [first.checked_sub(1), (after < count).then_some(after)];
+            let sides: Vec<usize> = sides.into_iter().flatten().collect();
+            if length < 2 || after > count || sides.is_empty() || (first..after).any(is_known) {
                 continue;
             }
-            let pressed = |taxel: usize, frame: &Vec<f64>| frame[taxel] < -WITHIN * largest(frame);
-            let sides = |index: usize| [before, after].map(|line| line * across + index * along);
-            let is_between =
-                |&index: &usize| loaded.iter().any(|frame| sides(index).iter().all(|&taxel| pressed(taxel, frame)));
+            let is_between = |&index: &usize| {
+                loaded.iter().any(|frame| sides.iter().all(|&line| pressed(place(line, index), frame)))
+            };
             let between: Vec<usize> = (0..length).filter(is_between).collect();
             let goes_with = |one: usize, other: usize| {
                 correlation(loaded.iter().map(|frame| (frame[one], frame[other]))).abs() >= FOLLOWS
             };
             let is_alone = |line: usize, &index: &usize| {
-                let taxel = line * across + index * along;
-                !sides(index).into_iter().any(|side| goes_with(taxel, side))
+                !sides.iter().any(|&side| goes_with(place(line, index), place(side, index)))
             };
             let reads_noise = |line: usize| {
                 loaded.len() >= FRAMES
-                    && peak(line) <= SILENT * peak(before).min(peak(after))
+                    && sides.iter().all(|&side| peak(line) <= SILENT * peak(side))
                     && between.iter().all(|index| is_alone(line, index))
             };
             let is_still = (first..after).all(still);
+            let is_edge = sides.len() == 1;
             // Between two contacts two rows that cannot read a pull may read 0 for good, and so do others then.
             let is_gap = clipped && run > 1 && (0..count).any(|line| !(first..after).contains(&line) && still(line));
+            // Beside a contact one at the edge reads nothing without a pull, and little with noise.
+            let may_be = if is_edge { is_still && !clipped } else { !is_gap };
             if !between.is_empty()
-                && !is_gap
+                && may_be
                 && (is_still || (first..after).all(|line| still(line) || reads_noise(line)))
             {
                 lines.extend((first..after).map(|line| format!("{what} {line}")));
@@ -112,10 +132,11 @@ fn dead_line(design: &Design, loaded: &[Vec<f64>], clipped: bool, constant: &dyn
             }
         }
     }
+    let read = if lines.len() > 1 { "read" } else { "reads" };
     (!lines.is_empty()).then(|| {
         format!(
-            "{} of the matrix (from 0) reads {} in all frames, with something pressing on both sides: is its wire broken? So \
-             many taxels cannot be replaced: mend it, or leave out that part of the sensor",
+            "{} of the matrix (from 0) {read} {} in all frames, with something pressing beside: is a wire broken? So many taxels \
+             cannot be replaced: mend it, or leave out that part of the sensor",
             lines.join(", "),
             if noisy { "nothing but noise" } else { "the same" }
         )

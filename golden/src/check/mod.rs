@@ -194,6 +194,8 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
     let whole = !counts && WHOLE * peak <= full_scale && frames.iter().flatten().all(|value| value.fract() == 0.0);
     // Where the largest reading presses, the sum pulls for an offset.
     let pulls = |frame: &&Vec<f64>| frame.iter().sum::<f64>() > 0.0 && farthest(frame) > 0.0;
+    let reads_nothing = |frame: &[f64]| frame.iter().sum::<f64>().abs() <= FAINT * peak * frame.len() as f64;
+    let is_tared = stress.iter().zip(&is_loaded).any(|(frame, &loaded)| !loaded && reads_nothing(frame));
     let with_load = |(stress, &loaded): (Vec<f64>, &bool)| loaded.then_some(stress);
     let mut loaded: Vec<Vec<f64>> = stress.into_iter().zip(&is_loaded).filter_map(with_load).collect();
     let pulling = loaded.iter().filter(pulls).count();
@@ -250,7 +252,7 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
     }
     let clipped = design.input.tension == Tension::Clipped
         || loaded.iter().all(|frame| frame.iter().all(|&stress| stress <= FAINT * largest(frame)));
-    if let Some(message) = rest::check(design, &loaded) {
+    if let Some(message) = rest::check(design, &loaded, is_tared) {
         found(Kind::Tare, message);
     } else if design.input.tension == Tension::Read && clipped {
         found(

@@ -11,10 +11,10 @@ const ONE_SIDE: f64 = 0.9;
 /// A pull of the whole rest is one only if it is larger than that of the layer around a contact, as a share of the peak.
 const LIFTED: f64 = 0.02;
 
-/// A load, or a pull, that even the taxels have that touch nothing.
-pub(super) fn check(design: &Design, loaded: &[Vec<f64>]) -> Option<String> {
+/// A load, or a pull, that even the taxels have that touch nothing; `is_tared`: frames without contact read nothing.
+pub(super) fn check(design: &Design, loaded: &[Vec<f64>], is_tared: bool) -> Option<String> {
     let sensor = &design.sensor;
-    if let Some(message) = pressed(design, loaded) {
+    if let Some(message) = pressed(design, loaded, is_tared) {
         return Some(message);
     }
     // The mean of the rest, where nearly all of it is on one side of 0.
@@ -44,7 +44,7 @@ pub(super) fn check(design: &Design, loaded: &[Vec<f64>]) -> Option<String> {
 }
 
 /// The least loaded quarter of the taxels is pressed.
-fn pressed(design: &Design, loaded: &[Vec<f64>]) -> Option<String> {
+fn pressed(design: &Design, loaded: &[Vec<f64>], is_tared: bool) -> Option<String> {
     let rest = |frame: &Vec<f64>| {
         let mut sorted = frame.clone();
         sorted.sort_by(|a, b| b.total_cmp(a));
@@ -61,6 +61,10 @@ fn pressed(design: &Design, loaded: &[Vec<f64>]) -> Option<String> {
                  in the file of sensor.calibration",
                 Scale::of(design).sign
             )
+        } else if is_tared {
+            "as frames without contact read nothing, the contact covers the grid, and part of it is not seen. Press with \
+             something smaller"
+                .to_owned()
         } else {
             "is the tare missing? Subtract a frame without contact, or write its offsets into the file of \
              sensor.calibration"

@@ -125,7 +125,7 @@ pub(super) fn join<'a>(
     if !target.counts {
         one_unit(&all, unit.as_ref()).map_err(|(line, problem)| wrong(line, problem))?;
     }
-    all = parted(all, columns, rows, if is_labelled { 0 } else { layout.labels });
+    all = parted(all, columns, rows, if is_labelled { 0 } else { layout.first() });
     let (mut frames, mut run) = (Vec::new(), Vec::new());
     let last = all.iter().rposition(|line| !line.content.is_empty()).map_or(0, |last| last + 1);
     all.truncate(last);
@@ -220,8 +220,8 @@ fn behind_labels<'a>(mut lines: Vec<Line<'a>>, numbers: &Sensor, rows: usize) ->
     are_labels.then_some(lines)
 }
 
-/// Lines with a blank one where a label changes that most frames have on all of their rows, as the number of the frame: a row
-/// that is lost shifts no other into its place.
+/// Lines with a blank one where the number of the frame changes, a label that most frames have on all of their rows. So a
+/// lost row shifts no other into its place.
 fn parted<'a>(all: Vec<Line<'a>>, columns: usize, rows: usize, labels: usize) -> Vec<Line<'a>> {
     let label = |line: &Line<'a>, at: usize| {
         line.row.as_ref().filter(|row| row.len() == columns)?;
@@ -229,8 +229,11 @@ fn parted<'a>(all: Vec<Line<'a>>, columns: usize, rows: usize, labels: usize) ->
     };
     let is_of_frames = |&at: &usize| {
         let of: Vec<&[u8]> = all.iter().filter_map(|line| label(line, at)).collect();
-        let (whole, others): (Vec<_>, Vec<_>) = of.chunk_by(|a, b| a == b).partition(|frame| frame.len() == rows);
-        whole.len() >= others.len() && whole.len() > 1
+        let runs: Vec<usize> = of.chunk_by(|a, b| a == b).map(<[_]>::len).collect();
+        let whole = runs.iter().filter(|&&run| run == rows).count();
+        // A clock may tick within a frame: no row is lost where the two ends make a frame.
+        let ticks = whole + 2 == runs.len() && runs[0] + runs[runs.len() - 1] == rows;
+        whole > 1 && 2 * whole >= runs.len() && !ticks
     };
     let Some(at) = (0..labels).find(is_of_frames) else { return all };
     let (mut lines, mut before) = (Vec::new(), None);

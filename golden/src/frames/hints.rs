@@ -28,6 +28,9 @@ pub(super) fn value(target: &Target, layout: &Layout, text: &str) -> String {
 /// About a line of `found` fields in place of `expected`, `labels` of them before the values.
 pub(super) fn length(target: &Target, labels: usize, found: usize, expected: usize) -> String {
     let (taxels, columns) = (target.sensor.taxels(), target.sensor.columns);
+    let [first, last] = [labels + 2, labels + 1 + taxels];
+    let either_side = format!(". Some on either side? With --columns {first}-{last} or the like");
+    let either_side = if found > expected + 1 { &either_side } else { "" };
     let beside = found.checked_sub(labels + columns).filter(|beside| (1..=BESIDE).contains(beside));
     let hint = match (found.saturating_sub(expected), beside) {
         (0, Some(beside)) => format!(
@@ -49,11 +52,12 @@ pub(super) fn length(target: &Target, labels: usize, found: usize, expected: usi
         ),
         (more, _) => format!(
             "; {} more than taxels, a time or a total: in front of the values? Say so with --labels {}. Behind them? With \
-             --columns {}-{}",
+             --columns {}-{}{}",
             counted(more, "column"),
             labels + more,
             labels + 1,
-            labels + taxels
+            labels + taxels,
+            either_side
         ),
     };
     let what = if target.counts { "count" } else { "stress" };

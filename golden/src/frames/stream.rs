@@ -6,6 +6,10 @@ use super::FrameError;
 use super::layout::{Layout, Target};
 use super::text::{Label, Lines};
 use crate::design::{Design, Samples};
+use crate::separator::Separator;
+
+/// Labels of lines that are no frames. Other words may mark an event, and of a stream nobody knows whether more follow.
+const SUMMARIES: [&str; 9] = ["mean", "average", "avg", "median", "total", "sum", "std", "min", "max"];
 
 /// Makes frames of lines of text, one after the other.
 #[derive(Clone, Debug)]
@@ -13,8 +17,8 @@ pub struct FrameLines {
     lines: Lines,
     /// Frames that were there.
     frames: usize,
-    /// Whether the label of one of them was no number.
-    has_words: bool,
+    /// Whether the label of the first one is a number.
+    is_numbered: Option<bool>,
     samples: Samples,
     /// Fields of a row of the grid.
     columns: usize,
@@ -27,7 +31,7 @@ impl FrameLines {
         let layout = layout.into();
         let lines = Lines::new(origin, &layout, &Target::from(design));
         let columns = layout.first() + design.sensor.columns;
-        Self { lines, columns, frames: 0, has_words: false, samples: design.hardware.samples }
+        Self { lines, columns, frames: 0, is_numbered: None, samples: design.hardware.samples }
     }
 
     /// The error of a line, which may hold a row of the grid.
@@ -69,16 +73,12 @@ impl FrameLines {
             return Ok(None);
         }
         let number = self.lines.cells.number;
-        match self.lines.label(line).0 {
-            Label::Word if !self.has_words && self.frames > 2 => {
-                let problem = "a word where the lines before have a number, such as a mean or a total: take the line out, or \
-                               give frames a number";
-                let path = self.lines.cells.path.clone();
-                return self
-                    .lines
-                    .leave_out(number, FrameError::Shape { path, line: number, problem: problem.to_owned() });
-            }
-            label => self.has_words |= label != Label::Number,
+        let is_numbered = self.lines.label(line).0 == Label::Number;
+        if *self.is_numbered.get_or_insert(is_numbered) && is_summary(line) {
+            let problem =
+                "a mean or the like, where the lines before have a number: take the line out, or give frames a number";
+            let path = self.lines.cells.path.clone();
+            return self.lines.leave_out(number, FrameError::Shape { path, line: number, problem: problem.to_owned() });
         }
         let wrong = frame.iter().position(|&value| !self.samples.takes(value));
         let Some(column) = wrong else { return Ok(Some(frame)) };
@@ -86,4 +86,10 @@ impl FrameLines {
         let path = self.lines.cells.path.clone();
         Err(FrameError::Sample { path, place, value: frame[column], samples: self.samples })
     }
+}
+
+/// Whether a line's label says that it is a mean or the like.
+fn is_summary(line: &[u8]) -> bool {
+    let label = String::from_utf8_lossy(Separator::of(line).split(line)[0]).to_lowercase();
+    SUMMARIES.contains(&label.trim_matches(|letter: char| letter == '"' || letter.is_whitespace()))
 }

@@ -198,6 +198,10 @@ fn a_missing_tare_is_found_where_the_answer_still_looks_good() {
         assert_eq!(other, 0, "{counts}: {}", solution.status);
         assert!(solution.resultant[2] < -6.3, "the load of the tare counts as force: {:?}", solution.resultant);
     }
+    // With frames that read nothing before the touch, there is no tare to miss.
+    let rest = vec![vec![0.0; design.sensor.taxels()]; 10];
+    let large = [rest, changed(&frames, |pa| pa - 24.4 * 300.0)].concat();
+    found(&design, &large, &[Kind::Tare], &["36 of 36 frames", "the contact covers the grid"]);
 }
 
 #[test]
@@ -327,7 +331,20 @@ fn dead_taxels_within_a_contact_are_named() {
     let column: Vec<usize> = (0..10).map(|row| 10 * row + 4).collect();
     found(&design, &without(&column, 0.0), &[Kind::Dead], &["column 4 of the matrix", "leave out that part"]);
     let rows: Vec<usize> = (40..60).collect();
-    found(&design, &without(&rows, 0.0), &[Kind::Dead], &["row 4, row 5 of the matrix", "reads the same"]);
+    found(&design, &without(&rows, 0.0), &[Kind::Dead], &["row 4, row 5 of the matrix", "read the same"]);
+    // At the edge, beside what the contact loads.
+    let edge: Vec<usize> = (0..40).collect();
+    found(&design, &without(&edge[..30], 0.0), &[], &[]);
+    let near: Vec<Vec<f64>> =
+        frames.iter().map(|frame| frame[20..].iter().chain(&frame[..20]).copied().collect()).collect();
+    let dead: Vec<Vec<f64>> = near
+        .iter()
+        .map(|frame| frame.iter().enumerate().map(|(taxel, &pa)| if taxel < 20 { 0.0 } else { pa }).collect())
+        .collect();
+    found(&design, &dead, &[Kind::Dead], &["row 0, row 1 of the matrix (from 0) read the same"]);
+    let mut bridged = frames.clone();
+    bridged.iter_mut().for_each(|frame| frame.copy_within(60..70, 50));
+    found(&design, &bridged, &[Kind::Dead], &["row 5 and row 6 of the matrix", "wires connected"]);
     // It makes two contacts of one.
     let counting = Design {
         algorithm: golden::design::Algorithm { count_contacts: true, ..design.algorithm.clone() },
@@ -342,7 +359,7 @@ fn dead_taxels_within_a_contact_are_named() {
         for (number, frame) in noisy.iter_mut().enumerate() {
             rows.clone().for_each(|taxel| frame[taxel] = 0.01 * peak * noise(number, taxel));
         }
-        found(&design, &noisy, &[Kind::Dead], &["row 5 of the matrix (from 0) reads nothing but noise"]);
+        found(&design, &noisy, &[Kind::Dead], &["row 5 of the matrix (from 0) read", "nothing but noise"]);
     }
     // One far from the contact may well read nothing, and the design knows of this one.
     found(&design, &without(&[0], 0.0), &[], &[]);

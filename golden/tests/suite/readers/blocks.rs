@@ -114,4 +114,9 @@ fn rows_behind_the_number_of_their_frame() {
     refused(read(&more, 2), &["line 7", "a block of 1 row ends here where the sensor has 2"]);
     let some = read(&more, Layout { labels: 2, skip_bad: true, ..Layout::default() });
     assert_eq!(both(some).skipped, [2, 3]);
+    let columns = Layout { columns: Some([3, 5]), ..Layout::default() };
+    refused(read(&more, columns), &["line 7", "a block of 1 row ends here where the sensor has 2"]);
+    // A clock that ticks within a frame is no number of it.
+    let ticks = "0,-7.5,-1,0\n1,2,-3,5\n1,-8,-2,1\n2,0.5,-4,6\n2,-7.5,-1,0\n3,2,-3,5\n";
+    assert_eq!(read(ticks, 1).unwrap().frames, [A, B, A]);
 }

@@ -131,8 +131,16 @@ fn means_below_the_frames_are_none() {
             FrameLines::new(Path::new("port"), &pad(""), Layout { labels: 1, skip_bad, ..Layout::default() });
         let mut next = |line: &str| stream.frame(line.as_bytes()).map_err(|error| error.to_string());
         assert!(frames.lines().all(|line| next(line).unwrap().is_some()));
-        let mean = next("mean,1,2,3,4,5,6");
-        let said = "port, line 3: a word where the lines before have a number";
+        // Whoever touches it may mark a line.
+        assert!(next("touch,-7.5,-1,0,2,-3,5").unwrap().is_some());
+    }
+    for skip_bad in [false, true] {
+        let mut stream =
+            FrameLines::new(Path::new("port"), &pad(""), Layout { labels: 1, skip_bad, ..Layout::default() });
+        let mut next = |line: &str| stream.frame(line.as_bytes()).map_err(|error| error.to_string());
+        assert!(frames.lines().all(|line| next(line).unwrap().is_some()));
+        let mean = next("Mean,1,2,3,4,5,6");
+        let said = "port, line 3: a mean or the like, where the lines before have a number";
         assert!(mean.map_or_else(|error| !skip_bad && error.contains(said), |frame| skip_bad && frame.is_none()));
         assert!(next("2,-7.5,-1,0,2,-3,5").unwrap().is_some());
     }
