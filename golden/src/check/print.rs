@@ -13,7 +13,7 @@ const WHOLE: f64 = 0.9;
 const LESS: f64 = 0.5;
 /// Where a baseline follows, all that pulls is as opposite to all that presses,
 const FOLLOWS: f64 = -0.7;
-/// and decays: of so many frames that pull, at most one pulls as the largest does.
+/// and decays: at most one in so many of them pulls as much as the largest.
 const DECAYS: usize = 2;
 
 /// A message where the loaded frame that pulls most is the negative of another, in pascals. So is one that a recording begins

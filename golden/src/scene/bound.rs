@@ -14,11 +14,10 @@ const STEP: f64 = 1.0 / 30.0;
 /// Directions of a quarter circle, over which errors are averaged.
 const DIRECTIONS: u32 = 16;
 
-/// Bound of the tangential force's error at a noise of 1 %: median and 95 % quantile of the length of an efficient estimator's
-/// error, in percent of the normal force. It is proportional to the noise, a standard deviation in percent of the frame's largest
-/// reading.
+/// Cramér-Rao bound of the tangential force's error at a noise of 1 % of the frame's largest reading.
 ///
-/// The contacts are those of [`Kind::Sliding`]. Their place, radius, normal and tangential force are unknown. The sensor reads
+/// Median and 95 % quantile of the error's length, in percent of the normal force; both are proportional to the noise. The
+/// contacts are those of [`Kind::Sliding`]. Their place, radius, normal and tangential force are unknown. The sensor reads
 /// tension; one that does not knows less. Infinite if the taxels do not determine these six numbers.
 ///
 /// # Errors
@@ -38,8 +37,8 @@ pub fn bound(
     Ok(variances.map_or([f64::INFINITY; 2], |variances| [0.5, 0.95].map(|share| quantile(&variances, share))))
 }
 
-/// Variances of the tangential force's error along its principal axes at a noise of 1 %, the larger first, in squared percent of
-/// the normal force; none where the readings do not determine the contact.
+/// Variances of the tangential force's error along its principal axes at a noise of 1 %, the larger first. In squared percent
+/// of the normal force; none where the readings do not determine the contact.
 fn variances(sensor: &Sensor, medium: Medium, contact: &Contact) -> Result<Option<[f64; 2]>, SceneError> {
     let [x, y] = contact.centre_m;
     let [radius, _] = contact.shape.half_extent_m();

@@ -55,8 +55,8 @@ pub fn section(designs: &[&Design]) -> Result<Section, PageError> {
     Ok(Section { plot: Some(plot(&known, bound)), uncalibrated })
 }
 
-/// Median (solid) and 95 % (dotted) of each design at its own noise, and for each noise the bound of the median (dashed),
-/// which is stated at 1 %.
+/// Median (solid) and 95 % (dotted) of each design at its own noise. For each noise the bound of the median (dashed): `bound`
+/// is that at 1 %.
 fn plot(designs: &[(&Design, &ExpectedError)], bound: f64) -> Plot {
     let frames = |k: u32| f64::from(2_u32.pow(k + 1) - 1);
     let mut lines: Vec<Line> = Vec::new();
