@@ -343,7 +343,9 @@ fn dead_taxels_within_a_contact_are_named() {
         .collect();
     found(&design, &dead, &[Kind::Dead], &["row 0, row 1 of the matrix (from 0) read the same"]);
     let mut bridged = frames.clone();
-    bridged.iter_mut().for_each(|frame| frame.copy_within(60..70, 50));
+    for frame in &mut bridged {
+        frame.copy_within(60..70, 50);
+    }
     found(&design, &bridged, &[Kind::Dead], &["row 5 and row 6 of the matrix", "wires connected"]);
     // It makes two contacts of one.
     let counting = Design {
