@@ -21,10 +21,14 @@ const NO_CHANCE: f64 = 1e-3;
 const FAR: f64 = 10.0;
 /// This share of the readings at the least of all is a converter that clips there.
 const CLIPPED: f64 = 0.05;
+/// This share of them halves the noise, unless that is of a step or less.
+const CUT: f64 = 0.2;
 /// The noise floor in deviations, as `sptfra calibrate` has it.
 const QUIET: f64 = 3.0;
 /// A deviation, or a step, of this share of the full scale is no noise.
 const LOUD: f64 = 0.01;
+/// Noise that goes on from frame to frame by more than this is not averaged as white noise is.
+const GOES_ON: f64 = 0.3;
 /// Neighbours at rest have less than this in common.
 const TOGETHER: f64 = 0.5;
 /// Frames whose largest reading is this share of the largest of all have load.
@@ -69,6 +73,8 @@ pub struct TaxelAtRest {
     pub noise: f64,
     /// Mean of the last third of the frames less that of the first third.
     pub drift: f64,
+    /// Correlation of its noise with that of the next frame.
+    pub correlation: f64,
 }
 
 /// What frames tell of a sensor on which nothing presses.
@@ -92,6 +98,8 @@ pub struct AtRest {
     pub noise_of_full_scale: f64,
     /// Median of the taxels' drift, in the units of the file.
     pub drift: f64,
+    /// Median correlation of the noise with that of the next frame.
+    pub correlation: f64,
     /// Signs that something pressed, or that the recording does not suit.
     pub warnings: Vec<String>,
     /// Whether one of them says that something lay on the sensor or touched it.
@@ -127,6 +135,7 @@ impl AtRest {
         };
         let noise_pa = median(live.iter().map(pascals));
         let drift = median(live.iter().map(|each| each.drift));
+        let correlation = median(live.iter().map(|each| each.correlation));
         let full_scale = design.hardware.full_scale_pa;
         let mut rest = Self {
             taxels: all,
@@ -138,6 +147,7 @@ impl AtRest {
             noise_floor_pa: QUIET * noise_pa,
             noise_of_full_scale: noise_pa / full_scale,
             drift,
+            correlation,
             warnings: Vec::new(),
             touched: false,
         };
@@ -147,8 +157,18 @@ impl AtRest {
         Ok(rest)
     }
 
+    /// Whether the noise goes on from frame to frame, so that averages lessen it less than they do white noise.
+    pub fn goes_on(&self) -> bool {
+        self.correlation > GOES_ON
+    }
+
     fn works(&self, taxel: usize) -> bool {
         !self.dead.contains(&taxel) && !self.stuck.contains(&taxel)
+    }
+
+    /// What the taxels that work read in a frame.
+    fn live(&self, frame: &[f64]) -> Vec<f64> {
+        frame.iter().enumerate().filter(|(taxel, _)| self.works(*taxel)).map(|(_, value)| *value).collect()
     }
 
     /// Signs that something lay on the sensor or touched it.
@@ -190,6 +210,12 @@ impl AtRest {
                     .to_owned(),
             );
         }
+        if self.goes_on() {
+            said.push(format!(
+                "the noise goes on from frame to frame (correlation {:.2}): smoothing brings less than at white noise",
+                self.correlation
+            ));
+        }
         // A third of the frames each, with their noise.
         let chance = usual * (6.0 / frames.len() as f64).sqrt();
         if self.drift.abs() > usual && self.drift.abs() > 4.0 * chance {
@@ -197,6 +223,19 @@ impl AtRest {
                 "the median taxel drifts by {:.1}, more than its noise: let the sensor warm up, and wait after a load",
                 self.drift
             ));
+        }
+        let readings: Vec<f64> = frames.iter().flat_map(|frame| self.live(frame)).collect();
+        for (pick, which) in [(f64::min as fn(f64, f64) -> f64, "least"), (f64::max, "largest")] {
+            let end = readings.iter().copied().reduce(pick).unwrap_or(0.0);
+            let share =
+                readings.iter().filter(|value| value.total_cmp(&end).is_eq()).count() as f64 / readings.len() as f64;
+            if share > CUT && self.noise > 1.0 {
+                said.push(format!(
+                    "{:.0} % of the readings are {end}, the {which} of all: the converter clips the noise there, which is larger \
+                     than measured, and shifts the offsets; let its range reach beyond rest",
+                    100.0 * share
+                ));
+            }
         }
         if !silent.is_empty() {
             said.push(format!(
@@ -277,13 +316,16 @@ fn taxel_at_rest(frames: &[Vec<f64>], taxel: usize) -> TaxelAtRest {
     let readings = || frames.iter().enumerate().map(|(index, frame)| (time(index), frame[taxel] - offset));
     let slope = readings().map(|(time, value)| time * value).sum::<f64>()
         / readings().map(|(time, _)| time * time).sum::<f64>();
-    let squares: f64 = readings().map(|(time, value)| (value - slope * time).powi(2)).sum();
+    let noise: Vec<f64> = readings().map(|(time, value)| value - slope * time).collect();
+    let squares: f64 = noise.iter().map(|value| value * value).sum();
+    let products: f64 = noise.windows(2).map(|pair| pair[0] * pair[1]).sum();
     let third = frames.len() / 3;
     TaxelAtRest {
         taxel,
         offset,
         noise: (squares / (count - 2.0)).sqrt(),
         drift: mean(&frames[frames.len() - third..]) - mean(&frames[..third]),
+        correlation: if squares > 0.0 { products / squares } else { 0.0 },
     }
 }
 

@@ -76,7 +76,9 @@ pub fn run(
         beyond,
         calibration: out,
         noise_of_contacts,
-        expected_error: design.expected_error_at(noise_of_contacts.map_or(design.input.noise, shown)),
+        expected_error: design
+            .expected_error_at(noise_of_contacts.map_or(design.input.noise, shown))
+            .map(|expected| if rest.goes_on() { expected.of_single_frames() } else { expected }),
     };
     if json {
         return Ok(Message { text: serde_json::to_string_pretty(&report)? + "\n", faults });

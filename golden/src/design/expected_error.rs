@@ -74,6 +74,14 @@ pub struct Expected {
     advised: Option<f64>,
 }
 
+impl Expected {
+    /// The same without what smoothing would bring, which is for white noise.
+    #[must_use]
+    pub fn of_single_frames(self) -> Self {
+        Self { advised: None, ..self }
+    }
+}
+
 impl Display for Expected {
     fn fmt(&self, to: &mut Formatter<'_>) -> fmt::Result {
         let Self { noise, median_percent, p95_percent, averaged, is_beyond, advised } = self;

@@ -110,6 +110,26 @@ fn each_taxel_at_rest_is_measured() {
     assert_eq!(rest.warnings, [] as [String; 0]);
 }
 
+/// Half of the noise is beyond the converter's end, which hides as much of its deviation.
+#[test]
+fn noise_that_is_clipped_or_goes_on_is_named() {
+    let clipped = |least: f64, most: f64| frames(200, |frame, taxel| (4.0 * noise(frame, taxel)).clamp(least, most));
+    for (least, most, which) in [(0.0, 100.0, "are 0, the least"), (-100.0, 0.0, "are 0, the largest")] {
+        let rest = AtRest::of(&mat(""), &clipped(least, most)).unwrap();
+        assert!(rest.noise < 3.0 && !rest.touched, "{rest:?}");
+        assert!(rest.warnings.iter().any(|warning| warning.contains(which)), "{:?}", rest.warnings);
+    }
+    assert_eq!(AtRest::of(&mat(""), &clipped(-100.0, 100.0)).unwrap().warnings, [""; 0]);
+    // Noise that goes on is averaged less.
+    let slow = frames(200, |frame, taxel| (0..8).map(|back| 2.0 * noise(frame + back, taxel)).sum());
+    let rest = AtRest::of(&mat(""), &slow).unwrap();
+    assert!((rest.correlation - 7.0 / 8.0).abs() < 0.1 && rest.goes_on(), "{}", rest.correlation);
+    assert!(rest.warnings.iter().any(|warning| warning.contains("goes on from frame to frame")), "{:?}", rest.warnings);
+    // Noise of half a step has few values.
+    let coarse = frames(200, |frame, taxel| 0.5 * noise(frame, taxel));
+    assert_eq!(AtRest::of(&mat(""), &coarse).unwrap().warnings, [""; 0]);
+}
+
 #[test]
 fn a_load_in_an_unloaded_recording_is_warned_of() {
     let design = mat("");
