@@ -24,27 +24,55 @@ const CLEARLY: f64 = 0.25;
 
 /// What each lag leaves unexplained of the readings' variance.
 pub(super) struct Lags {
-    /// From the farthest lag before to the farthest behind.
+    /// From the farthest lag before to the farthest behind, those of the other sign as 1.
     left: Vec<f64>,
+    /// The sign that counts; without one, both.
+    pub(super) sign: Option<f64>,
+    /// A lag that fits nearly as well with the other sign: 0, or else the best.
+    turned: Option<isize>,
     /// A lag that leaves more is worse than the best.
     alike: f64,
     /// One that leaves more is clearly worse.
     near: f64,
 }
 
+/// Two lags of which neither is clearly better.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Unclear {
+    pub(super) best: isize,
+    pub(super) other: isize,
+    /// Whether the other fits with the sign turned.
+    pub(super) is_turned: bool,
+}
+
 impl Lags {
     /// Of readings and loads. `apart` says how many times the best one's variance a worse lag leaves, and a clearly worse one.
+    /// Of a `sign` that is expected of their correlation the other counts only where no lag of this one fits nearly as well.
     /// Nothing where no lag explains the readings.
-    pub(super) fn of(readings: &[f64], loads: &[Option<f64>], apart: [f64; 2]) -> Option<Self> {
+    pub(super) fn of(readings: &[f64], loads: &[Option<f64>], apart: [f64; 2], sign: Option<f64>) -> Option<Self> {
         let count = readings.len().min(loads.len());
         if count < FRAMES {
             return None;
         }
         let farthest = (count / SHARE).min(WORK / count) as isize;
-        let left: Vec<f64> = (-farthest..=farthest).map(|lag| unexplained(readings, loads, lag)).collect();
-        let best = left.iter().copied().fold(f64::INFINITY, f64::min);
+        let found: Vec<f64> = (-farthest..=farthest).map(|lag| correlate(readings, loads, lag)).collect();
+        let left = |sign: Option<f64>| -> Vec<f64> { found.iter().map(|found| unexplained(*found, sign)).collect() };
+        let least = |left: &[f64]| left.iter().copied().fold(f64::INFINITY, f64::min);
+        let both = Self { left: left(None), sign: None, turned: None, alike: 0.0, near: 0.0 };
+        let best = least(&both.left);
         let alike = apart[0] * best.max(ROUNDING);
-        (best <= 1.0 - EXPLAINS).then(|| Self { left, alike, near: (apart[1] * best).min(HALF).max(alike) })
+        let both = Self { alike, near: (apart[1] * best).min(HALF).max(alike), ..both };
+        if best > 1.0 - EXPLAINS {
+            return None;
+        }
+        let Some(sign) = sign else { return Some(both) };
+        let [right, other] = [sign, -sign].map(|sign| Self { left: left(Some(sign)), sign: Some(sign), ..both });
+        if least(&right.left) > both.near {
+            return Some(other);
+        }
+        let is_near = |lag: &isize| other.left[other.zero().saturating_add_signed(*lag)] <= both.near;
+        let turned = [Some(0), other.best_of(0..found.len())].into_iter().flatten().find(is_near);
+        Some(Self { turned, ..right })
     }
 
     fn zero(&self) -> usize {
@@ -85,24 +113,31 @@ impl Lags {
     /// # Errors
     ///
     /// The best lag and another of which it is not clearly better, unless the best is around 0.
-    pub(super) fn best(&self) -> Result<isize, [isize; 2]> {
+    pub(super) fn best(&self) -> Result<isize, Unclear> {
         let zero = self.zero();
         let best = self.best_of(0..self.left.len()).filter(|_| !self.allow(0)).unwrap_or(0);
         let around = self.around(zero.saturating_add_signed(best));
+        let turned = self.turned.filter(|_| !around.contains(&zero));
+        let turned = turned.map(|other| Unclear { best, other, is_turned: true });
         let mut others = std::iter::once(zero).chain(0..around.start).chain(around.end..self.left.len());
-        match others.find(|&place| self.left[place] <= self.near) {
-            Some(other) if !around.contains(&other) => Err([best, other as isize - zero as isize]),
-            _ => Ok(best),
-        }
+        let other = others.find(|&place| self.left[place] <= self.near).filter(|other| !around.contains(other));
+        let other = other.map(|other| Unclear { best, other: other as isize - zero as isize, is_turned: false });
+        // That the sign may be what differs is said first where lag 0 has it.
+        turned.filter(|turned| turned.other == 0).or(other).or(turned).map_or(Ok(best), Err)
     }
 }
 
-/// The share of the readings' variance that a straight line of the loads leaves, if these come `lag` frames late.
-fn unexplained(readings: &[f64], loads: &[Option<f64>], lag: isize) -> f64 {
+/// The share of a variance that a straight line leaves, whose slope may have one sign only.
+fn unexplained(correlation: f64, sign: Option<f64>) -> f64 {
+    1.0 - sign.map_or(correlation, |sign| (sign * correlation).max(0.0)).powi(2)
+}
+
+/// The correlation of the readings with the loads, if these come `lag` frames late.
+fn correlate(readings: &[f64], loads: &[Option<f64>], lag: isize) -> f64 {
     let skip = |late: isize| usize::try_from(late).unwrap_or(0);
     let lines = loads.iter().skip(skip(lag));
     let pairs = readings.iter().skip(skip(-lag)).zip(lines).filter_map(|(&reading, load)| Some((reading, (*load)?)));
-    1.0 - correlation(pairs).powi(2)
+    correlation(pairs)
 }
 
 /// About where one of two logs of other lengths lacks entries: which place explains clearly more than its ends.
@@ -112,7 +147,7 @@ pub(super) fn lost(readings: &[f64], loads: &[Option<f64>]) -> Option<usize> {
     let left = |place: usize| {
         let later = |at: usize, is_whole: bool| if at < place || !is_whole { at } else { at + lost };
         let pair = move |at: usize| Some((readings[later(at, count > lines)], loads[later(at, lines > count)]?));
-        1.0 - correlation((0..both).filter_map(pair)).powi(2)
+        unexplained(correlation((0..both).filter_map(pair)), None)
     };
     let places = (1..PLACES).map(|place| place * both / PLACES);
     let best = places.min_by(|&a, &b| left(a).total_cmp(&left(b)))?;
@@ -130,7 +165,7 @@ mod tests {
         for factor in [0.1, 0.3, 0.7, 1.0, 3.3, 10.0, 17.9] {
             let loads: Vec<_> = (0..100).map(|n| Some(-load(n))).collect();
             let readings: Vec<_> = (0..100).map(|n| 5.0 + factor * load(n)).collect();
-            assert_eq!(Lags::of(&readings, &loads, [4.0; 2]).unwrap().best(), Ok(0), "{factor}");
+            assert_eq!(Lags::of(&readings, &loads, [4.0; 2], None).unwrap().best(), Ok(0), "{factor}");
         }
     }
 }

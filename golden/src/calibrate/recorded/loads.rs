@@ -1,6 +1,6 @@
 //! What pressed in each frame, what the taxels read without load, and where the converter ends.
 
-use super::lag::{self, Lags};
+use super::lag::{self, Lags, Unclear};
 use super::table::{Measured, Pairing};
 use crate::design::Design;
 use crate::numbers::{counted, magnitude, middle, sorted};
@@ -54,37 +54,71 @@ impl Follow {
             }
         }
     }
+
+    /// The sign of their correlation by the design and the file's own sign of what presses; nothing if none can be told.
+    fn sign(&self, design: &Design, loads: &[Option<f64>]) -> Option<f64> {
+        if let Self::Sideways(_) = self {
+            return Some(1.0);
+        }
+        let input = &design.input;
+        let alive = (0..design.sensor.taxels()).filter(|taxel| !input.dead.contains(taxel));
+        // Both ends: a curve of the wrong sign has none of what presses.
+        let largest = design.hardware.full_scale_pa;
+        let rise = alive.map(|taxel| input.from_pa(taxel, -largest) - input.from_pa(taxel, largest));
+        let sign = rise.filter(|rise| rise.is_finite()).sum::<f64>() * presses(loads.iter().flatten());
+        (sign != 0.0).then(|| sign.signum())
+    }
 }
 
-/// By how many frames the loads come late.
+/// The sign that a file gives to what presses.
+fn presses<'a>(known: impl Iterator<Item = &'a f64>) -> f64 {
+    known.sum::<f64>().signum()
+}
+
+/// By how many frames the loads come late, and the sign of their correlation with the readings, `sign` being expected.
 ///
 /// # Errors
 ///
 /// Why none can be told.
-fn lag_of(readings: &[f64], loads: &[Option<f64>], pairing: Pairing, is_sideways: bool) -> Result<isize, String> {
-    let Some(lags) = Lags::of(readings, loads, APART) else {
+fn lag_of(
+    readings: &[f64],
+    loads: &[Option<f64>],
+    pairing: Pairing,
+    is_sideways: bool,
+    sign: Option<f64>,
+) -> Result<(isize, Option<f64>), String> {
+    // One clock says what belongs together, whatever the sign.
+    let sign = sign.filter(|_| pairing != Pairing::Clock);
+    let Some(lags) = Lags::of(readings, loads, APART, sign) else {
         return match pairing {
             Pairing::Apart => Err("their clocks differ, and no lag explains what the frames read".to_owned()),
             // Frames that are too few tell nothing.
             Pairing::Lines if is_sideways && readings.len() >= lag::FRAMES => {
                 Err("no F_z is known, and the F_x and F_y that the design finds do not follow them".to_owned())
             }
-            _ => Ok(0),
+            _ => Ok((0, sign)),
         };
     };
-    // One clock says what belongs together, unless it does not fit at all.
+    // Unless it does not fit at all.
     if pairing == Pairing::Clock {
-        return lags.far_better().map_or(Ok(0), |lag| {
+        return lags.far_better().map_or(Ok((0, None)), |lag| {
             Err(format!("by their times they do not fit, and {} would: do their clocks differ?", together(lag)))
         });
     }
     // Files of one length hardly begin far apart.
     let is_near = readings.len() == loads.len() && pairing != Pairing::Apart;
     let around_zero = if is_near { lags.best_around_zero() } else { None };
-    lags.best().or_else(|[one, other]| {
-        let why = || format!("{} fits the loads nearly as well as {}", together(other), together(one));
-        around_zero.ok_or_else(why)
-    })
+    let best = lags.best().or_else(|Unclear { best, other, is_turned }| {
+        let [best, other] = [best, other].map(together);
+        around_zero.ok_or_else(|| {
+            if is_turned {
+                format!("{best} fits the loads nearly as well as {other} with the sign turned")
+            } else {
+                format!("{other} fits the loads nearly as well as {best}")
+            }
+        })
+    })?;
+    Ok((best, lags.sign))
 }
 
 /// Frames and lines of the forces, or of a bladder's pressures, one for one. Where they do not begin together, the lag is
@@ -115,7 +149,8 @@ pub(super) fn pair<'a>(
         (format!("frames and loads do not begin together, or frames are missing: {why}"), remedy.to_owned())
     };
     let is_sideways = matches!(follow, Follow::Sideways(_));
-    let lag = lag_of(&readings, &loads, measured.pairing, is_sideways).map_err(unclear)?;
+    let sign = follow.sign(design, &loads);
+    let (lag, sign) = lag_of(&readings, &loads, measured.pairing, is_sideways, sign).map_err(unclear)?;
     let lost = |place: usize, count: isize| {
         let lost = match count {
             1 => "1 frame is".to_owned(),
@@ -135,7 +170,7 @@ pub(super) fn pair<'a>(
     let skip = |frames: isize| usize::try_from(frames).unwrap_or(0);
     let (frames, from) = (&frames[skip(-lag)..], skip(lag));
     let both = frames.len().min(lines - from);
-    let parts = Parts::of(&readings[skip(-lag)..][..both], &loads[from..][..both]);
+    let parts = Parts::of(&readings[skip(-lag)..][..both], &loads[from..][..both], sign);
     if let Some((place, count)) = parts.missing().filter(|_| !clock) {
         return lost(skip(-lag) + place + 1, count);
     }
@@ -172,7 +207,7 @@ struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    fn of(readings: &[f64], loads: &'a [Option<f64>]) -> Self {
+    fn of(readings: &[f64], loads: &'a [Option<f64>], sign: Option<f64>) -> Self {
         let range = |loads: &[Option<f64>]| {
             let sorted = sorted(loads.iter().flatten().copied());
             sorted.last().zip(sorted.first()).map_or(0.0, |(most, least)| most - least)
@@ -180,7 +215,8 @@ impl<'a> Parts<'a> {
         let (length, least) = (readings.len() / PARTS, VARIES * range(loads));
         let part = |begin: usize| {
             let loads = &loads[begin..][..length];
-            let lags = (range(loads) >= least).then(|| Lags::of(&readings[begin..][..length], loads, APART_IN_PART));
+            let readings = &readings[begin..][..length];
+            let lags = (range(loads) >= least).then(|| Lags::of(readings, loads, APART_IN_PART, sign));
             Some((begin, lags??))
         };
         Self { loads, length, all: (0..PARTS).filter_map(|number| part(number * length)).collect() }
@@ -233,7 +269,7 @@ pub(super) fn loads(measured: &Measured, remarks: &mut Vec<String>) -> Result<Ve
             "give F_z of some frames: weights do, in newtons or grams".to_owned(),
         ));
     }
-    let sign = known.iter().sum::<f64>().signum();
+    let sign = presses(known.iter());
     if sign > 0.0 {
         remarks.push("F_z is positive in the file: taken for what presses".to_owned());
     }
@@ -427,6 +463,31 @@ mod tests {
                 _ => assert!(found.unwrap_err().1.contains("the same clock")),
             }
         }
+    }
+
+    /// Half a period late a sine looks as if the sign were turned, which the design knows.
+    #[test]
+    fn a_sign_is_turned_only_where_no_lag_has_the_right_one() {
+        let noise = |n: usize| 0.05 * random(n + 5000);
+        let sine = |n: usize| 1.0 - (n as f64 * std::f64::consts::TAU / 60.0).cos();
+        let loads: Vec<f64> = (0..600).map(sine).collect();
+        let read = |factor: f64, loads: &[f64], late: usize| -> Vec<f64> {
+            (0..600).map(|n| factor * loads[(n + late) % loads.len()] + noise(n)).collect()
+        };
+        assert_eq!(paired(&read(5.0, &loads, 0), &loads).unwrap(), [""; 0]);
+        for (factor, late) in [(5.0, 30), (-5.0, 0)] {
+            let (problem, remedy) = paired(&read(factor, &loads, late), &loads).unwrap_err();
+            let turned = "fits the loads nearly as well as line 1 to frame 1 with the sign turned";
+            assert!(problem.contains(turned), "{problem}");
+            assert!(remedy.contains("column of times"), "{remedy}");
+        }
+        // One clock, or loads that do not repeat, leave the sign to the readings.
+        let clock = Measured { pairing: Pairing::Clock, ..measured(&loads) };
+        assert_eq!(pair_all(&read(-5.0, &loads, 0), &clock).unwrap(), [""; 0]);
+        let loads = touches(600)[..600].to_vec();
+        assert_eq!(paired(&read(-5.0, &loads, 0), &loads).unwrap(), [""; 0]);
+        let remarks = paired(&read(-5.0, &loads, 20)[..580], &loads).unwrap();
+        assert!(remarks.iter().any(|remark| remark.contains("line 21 to frame 1")), "{remarks:?}");
     }
 
     /// A logger that is a little late all the time, as one part alone tells that is faster than the others.
