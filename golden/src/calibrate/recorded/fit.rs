@@ -7,7 +7,7 @@ use super::readings::Readings;
 use super::rows::Rows;
 use super::shape::{self, Kind, Own, Shape, Terms};
 use crate::design::Design;
-use crate::numbers::correlation;
+use crate::numbers::{correlation, middle};
 
 /// Loads below this share of the largest count as that much: their relative error is the scale's.
 const LIGHT: f64 = 0.1;
@@ -228,7 +228,8 @@ impl<'a> Work<'a> {
     fn fit_gains(&self, shape: &Shape, prior: Prior, holds: &[usize]) -> Vec<f64> {
         let shares = self.shares(shape);
         let wanted: Vec<f64> = shares.loads(&vec![0.0; self.before.len()]).iter().map(|load| 1.0 - load).collect();
-        shares.with(&self.design.sensor, prior.range).fit(holds, &wanted, prior.noise)
+        let delta = shares.with(&self.design.sensor, prior.range).fit(holds, &wanted, prior.noise);
+        shares.around_mean(holds, &delta)
     }
 
     /// What the recording says of each taxel's gain.
@@ -268,7 +269,7 @@ impl<'a> Work<'a> {
     ) -> (Found, Kind, Option<Prior>) {
         let all: Vec<usize> = (0..self.loads.len()).collect();
         let none = vec![0.0; self.before.len()];
-        let mut found = Found { shape: self.fit_shape(kinds[0], &none, &all), delta: none };
+        let mut found = Found { shape: self.fit_shape(kinds[0], &none, &all), delta: none.clone() };
         let (mut kind, mut prior) = (kinds[0], None);
         for round in 0..ROUNDS {
             self.look(&found, solver);
@@ -277,14 +278,21 @@ impl<'a> Work<'a> {
             }
             found.shape = self.fit_shape(kind, &found.delta, &all);
             if round < 2 {
-                prior = gains.and_then(|folds| self.choose_prior(&found.shape, folds));
+                prior = gains.and_then(|folds| {
+                    self.choose_prior(&found.shape, folds).filter(|&prior| self.is_better(kind, prior, folds))
+                });
             }
-            if let Some(prior) = prior {
-                found.delta = self.fit_gains(&found.shape, prior, &all);
-                found.shape = self.fit_shape(kind, &found.delta, &all);
-            }
+            found.delta = prior.map_or_else(|| none.clone(), |prior| self.fit_gains(&found.shape, prior, &all));
+            found.shape = self.fit_shape(kind, &found.delta, &all);
         }
         (found, kind, prior)
+    }
+
+    /// Whether gains clearly lower the error at what was left out while everything was fitted, and do not raise its median.
+    fn is_better(&self, kind: Kind, prior: Prior, folds: &Folds) -> bool {
+        let [with, without] = [Some(prior), None].map(|prior| self.validate(kind, prior, folds));
+        let median = |of: &Validated| middle(of.errors.iter().map(|error| error.abs()));
+        with.rms < BETTER * without.rms - ALIKE && median(&with) <= median(&without) && !self.is_chance(&without, &with)
     }
 
     /// The errors at what was left out while everything was fitted to the rest.

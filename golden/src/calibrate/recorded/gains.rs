@@ -64,6 +64,22 @@ impl Shares {
         Field { shares: self, across, among }
     }
 
+    /// Deviations such that the mean gain is 1 over what some holds load, as the fit weighs them: the rest is the curve's,
+    /// so that taxels which nothing touched have the mean too.
+    pub(super) fn around_mean(&self, holds: &[usize], delta: &[f64]) -> Vec<f64> {
+        let mut sums = [0.0; 2];
+        for &hold in holds {
+            for (share, delta) in self.x.row(hold).iter().zip(delta) {
+                let weight = share.max(0.0) / self.variance[hold];
+                sums[0] += weight * (1.0 + delta);
+                sums[1] += weight;
+            }
+        }
+        let mean = if sums[1] > 0.0 { sums[0] / sums[1] } else { 1.0 };
+        let of = |(delta, touched): (&f64, &bool)| if *touched { (1.0 + delta) / mean - 1.0 } else { 0.0 };
+        delta.iter().zip(&self.touched).map(of).collect()
+    }
+
     /// The share of each hold's load that gains of `1 + delta` give.
     pub(super) fn loads(&self, delta: &[f64]) -> Vec<f64> {
         let delta = DVector::from_column_slice(delta);

@@ -351,3 +351,24 @@ fn another_sign_and_another_unit_are_told() {
         assert!(said.len() == 1 && parts.iter().all(|part| said[0].contains(part)), "{keys}: {said:?}");
     }
 }
+
+/// What all gains have in common is the curve's, so that taxels which nothing touched have the mean of the others.
+#[test]
+fn the_mean_gain_is_one_and_gains_that_do_no_better_are_not_taken() {
+    let few = Recipe { scale: 40.0, noise: 2.0, places: 14, frames: 2, ..Recipe::new(80, Indenter::Block) };
+    let of = |seed: u64, spread: f64, indenter: Indenter| {
+        let mut recording = record(&Recipe { seed, indenter, spread, ..few.clone() });
+        weights_only(&mut recording.measured);
+        let found = fit_forces(&design(COUNTS, ""), &recording.frames, &recording.measured).unwrap();
+        let touched: Vec<f64> = found.gains.iter().filter(|gain| gain.touched).map(|gain| gain.gain).collect();
+        let told = found.gains.iter().filter(|gain| gain.told).count();
+        (touched.iter().sum::<f64>() / touched.len() as f64, told)
+    };
+    for (seed, indenter) in [(81, Indenter::Block), (82, Indenter::Ball)] {
+        let (mean, told) = of(seed, 0.1, indenter);
+        assert!((mean - 1.0).abs() < 0.03 && told > 0, "{seed}: mean {mean}, {told} told");
+    }
+    for (seed, indenter) in [(83, Indenter::Block), (84, Indenter::Disc), (85, Indenter::Ball)] {
+        assert_eq!(of(seed, 0.0, indenter), (1.0, 0), "{seed}");
+    }
+}
