@@ -248,7 +248,8 @@ impl<'a> Parts<'a> {
             let [earlier, later] = [begins(before, after), begins(after, before)];
             let enough = agree(&earlier) && agree(&later) && earlier.len().max(later.len()) >= AGREE;
             let (end, begin) = (earlier.last()? + length, *later.first()?);
-            (enough && end <= begin).then_some((usize::midpoint(end, begin), after - before))
+            // Lags to either side are those of loads that repeat.
+            (enough && before * after >= 0 && end <= begin).then_some((usize::midpoint(end, begin), after - before))
         })
     }
 }
