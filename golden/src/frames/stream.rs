@@ -15,8 +15,8 @@ const SUMMARIES: [&str; 9] = ["mean", "average", "avg", "median", "total", "sum"
 #[derive(Clone, Debug)]
 pub struct FrameLines {
     lines: Lines,
-    /// Frames that were there.
-    frames: usize,
+    /// Whether a frame was there.
+    begun: bool,
     /// Whether the label of the first one is a number.
     is_numbered: Option<bool>,
     samples: Samples,
@@ -31,7 +31,7 @@ impl FrameLines {
         let layout = layout.into();
         let lines = Lines::new(origin, &layout, &Target::from(design));
         let columns = layout.first() + design.sensor.columns;
-        Self { lines, columns, frames: 0, is_numbered: None, samples: design.hardware.samples }
+        Self { lines, columns, begun: false, is_numbered: None, samples: design.hardware.samples }
     }
 
     /// The error of a line, which may hold a row of the grid.
@@ -68,8 +68,7 @@ impl FrameLines {
         }
         let Some(frame) = self.lines.row(line).map_err(|error| self.of_row(error))? else { return Ok(None) };
         self.lines.unclear()?;
-        self.frames += 1;
-        if self.frames == 1 && self.lines.is_numbered(&frame) {
+        if !std::mem::replace(&mut self.begun, true) && self.lines.is_numbered(&frame) {
             return Ok(None);
         }
         let number = self.lines.cells.number;

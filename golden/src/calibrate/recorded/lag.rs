@@ -1,8 +1,9 @@
-//! The lag between two logs that do not begin together, by cross-correlation of the readings' sum with the load.
+//! The lag between two logs that do not begin together, of all frames and of parts, by cross-correlation of the readings' sum
+//! with the load.
 
 use std::ops::Range;
 
-use crate::numbers::correlation;
+use crate::numbers::{correlation, sorted};
 
 /// A lag is used only if it explains this share of the variance.
 const EXPLAINS: f64 = 0.7;
@@ -21,6 +22,17 @@ const WORK: usize = 20_000_000;
 const PLACES: usize = 64;
 /// and the share of the variance that it leaves of what its ends do.
 const CLEARLY: f64 = 0.25;
+
+/// Parts of a recording that are looked at for missing frames.
+const PARTS: usize = 8;
+/// A lag is worse than the best of a part from so many times its variance on: creep and curves let a wrong one look better.
+const APART_IN_PART: [f64; 2] = [4.0; 2];
+/// A part counts if its loads range over this share of the range of all.
+const VARIES: f64 = 0.5;
+/// Parts on either side of missing frames that agree, at least,
+const AGREE: usize = 2;
+/// or the first or the last part alone, if its loads cross the middle so often: what ends within a touch looks late.
+const CROSSINGS: usize = 3;
 
 /// What each lag leaves unexplained of the readings' variance.
 pub(super) struct Lags {
@@ -124,6 +136,62 @@ impl Lags {
         let other = other.map(|other| Unclear { best, other: other as isize - zero as isize, is_turned: false });
         // That the sign may be what differs is said first where lag 0 has it.
         turned.filter(|turned| turned.other == 0).or(other).or(turned).map_or(Ok(best), Err)
+    }
+}
+
+/// Parts of a recording whose loads vary.
+pub(super) struct Parts<'a> {
+    loads: &'a [Option<f64>],
+    length: usize,
+    /// Where each begins, and its lags.
+    all: Vec<(usize, Lags)>,
+}
+
+impl<'a> Parts<'a> {
+    pub(super) fn of(readings: &[f64], loads: &'a [Option<f64>], sign: Option<f64>) -> Self {
+        let range = |loads: &[Option<f64>]| {
+            let sorted = sorted(loads.iter().flatten().copied());
+            sorted.last().zip(sorted.first()).map_or(0.0, |(most, least)| most - least)
+        };
+        let (length, least) = (readings.len() / PARTS, VARIES * range(loads));
+        let part = |begin: usize| {
+            let loads = &loads[begin..][..length];
+            let readings = &readings[begin..][..length];
+            let lags = (range(loads) >= least).then(|| Lags::of(readings, loads, APART_IN_PART, sign));
+            Some((begin, lags??))
+        };
+        Self { loads, length, all: (0..PARTS).filter_map(|number| part(number * length)).collect() }
+    }
+
+    /// Whether most fit another lag than 0.
+    pub(super) fn most_differ(&self) -> bool {
+        2 * self.all.iter().filter(|(_, lags)| !lags.allow(0)).count() > self.all.len()
+    }
+
+    /// About where frames are missing, and how many; of lines of forces the negative number. What is missing shifts all parts
+    /// that follow.
+    pub(super) fn missing(&self) -> Option<(usize, isize)> {
+        let Self { loads, length, all } = self;
+        let begins = |lag: isize, other: isize| -> Vec<usize> {
+            all.iter().filter(|(_, lags)| lags.allow(lag) && !lags.allow(other)).map(|(begin, _)| *begin).collect()
+        };
+        let is_end = |begin: usize| {
+            let loads: Vec<f64> = loads[begin..][..*length].iter().flatten().copied().collect();
+            let [least, most] = [f64::min, f64::max].map(|pick| loads.iter().copied().reduce(pick).unwrap_or(0.0));
+            let is_above = |load: f64| load > f64::midpoint(least, most);
+            let crossings = loads.windows(2).filter(|pair| is_above(pair[0]) != is_above(pair[1])).count();
+            (begin == 0 || begin == (PARTS - 1) * length) && crossings >= CROSSINGS
+        };
+        let agree = |begins: &[usize]| begins.len() >= AGREE || begins.iter().any(|&begin| is_end(begin));
+        let lags: Vec<isize> = all.iter().filter_map(|(_, lags)| lags.best().ok()).collect();
+        let mut pairs = lags.iter().flat_map(|&before| lags.iter().map(move |&after| (before, after)));
+        pairs.find_map(|(before, after)| {
+            let [earlier, later] = [begins(before, after), begins(after, before)];
+            let enough = agree(&earlier) && agree(&later) && earlier.len().max(later.len()) >= AGREE;
+            let (end, begin) = (earlier.last()? + length, *later.first()?);
+            // Lags to either side are those of loads that repeat.
+            (enough && before * after >= 0 && end <= begin).then_some((usize::midpoint(end, begin), after - before))
+        })
     }
 }
 

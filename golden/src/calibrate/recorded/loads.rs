@@ -1,6 +1,6 @@
 //! What pressed in each frame, what the taxels read without load, and where the converter ends.
 
-use super::lag::{self, Lags, Unclear};
+use super::lag::{self, Lags, Parts, Unclear};
 use super::table::{Measured, Pairing};
 use crate::design::Design;
 use crate::numbers::{counted, magnitude, middle, sorted};
@@ -11,17 +11,6 @@ pub(super) const REST: f64 = 0.01;
 const LENGTHS: f64 = 0.1;
 /// A lag is worse than the best if it leaves so many times its variance, and clearly worse with the second.
 const APART: [f64; 2] = [2.0, 16.0];
-/// Parts of a recording that are looked at for missing frames.
-const PARTS: usize = 8;
-/// The same as [`APART`] in a part, where creep and curves let a wrong lag look better.
-const APART_IN_PART: [f64; 2] = [4.0; 2];
-/// A part counts if its loads range over this share of the range of all.
-const VARIES: f64 = 0.5;
-/// Parts on either side of missing frames that agree, at least,
-const AGREE: usize = 2;
-/// or the first or the last part alone, if its loads cross the middle so often: what ends within a touch looks late.
-const CROSSINGS: usize = 3;
-
 /// What is wrong with a recording, and what to do.
 pub(super) type Wrong = (String, String);
 
@@ -196,62 +185,6 @@ pub(super) fn pair<'a>(
     measured.pressures = measured.pressures.iter().skip(from).take(both).copied().collect();
     measured.contacts = measured.contacts.map(|names| names.into_iter().skip(from).take(both).collect());
     Ok((&frames[..both], measured, remarks))
-}
-
-/// Parts of a recording whose loads vary.
-struct Parts<'a> {
-    loads: &'a [Option<f64>],
-    length: usize,
-    /// Where each begins, and its lags.
-    all: Vec<(usize, Lags)>,
-}
-
-impl<'a> Parts<'a> {
-    fn of(readings: &[f64], loads: &'a [Option<f64>], sign: Option<f64>) -> Self {
-        let range = |loads: &[Option<f64>]| {
-            let sorted = sorted(loads.iter().flatten().copied());
-            sorted.last().zip(sorted.first()).map_or(0.0, |(most, least)| most - least)
-        };
-        let (length, least) = (readings.len() / PARTS, VARIES * range(loads));
-        let part = |begin: usize| {
-            let loads = &loads[begin..][..length];
-            let readings = &readings[begin..][..length];
-            let lags = (range(loads) >= least).then(|| Lags::of(readings, loads, APART_IN_PART, sign));
-            Some((begin, lags??))
-        };
-        Self { loads, length, all: (0..PARTS).filter_map(|number| part(number * length)).collect() }
-    }
-
-    /// Whether most fit another lag than 0.
-    fn most_differ(&self) -> bool {
-        2 * self.all.iter().filter(|(_, lags)| !lags.allow(0)).count() > self.all.len()
-    }
-
-    /// About where frames are missing, and how many; of lines of forces the negative number. What is missing shifts all parts
-    /// that follow.
-    fn missing(&self) -> Option<(usize, isize)> {
-        let Self { loads, length, all } = self;
-        let begins = |lag: isize, other: isize| -> Vec<usize> {
-            all.iter().filter(|(_, lags)| lags.allow(lag) && !lags.allow(other)).map(|(begin, _)| *begin).collect()
-        };
-        let is_end = |begin: usize| {
-            let loads: Vec<f64> = loads[begin..][..*length].iter().flatten().copied().collect();
-            let [least, most] = [f64::min, f64::max].map(|pick| loads.iter().copied().reduce(pick).unwrap_or(0.0));
-            let is_above = |load: f64| load > f64::midpoint(least, most);
-            let crossings = loads.windows(2).filter(|pair| is_above(pair[0]) != is_above(pair[1])).count();
-            (begin == 0 || begin == (PARTS - 1) * length) && crossings >= CROSSINGS
-        };
-        let agree = |begins: &[usize]| begins.len() >= AGREE || begins.iter().any(|&begin| is_end(begin));
-        let lags: Vec<isize> = all.iter().filter_map(|(_, lags)| lags.best().ok()).collect();
-        let mut pairs = lags.iter().flat_map(|&before| lags.iter().map(move |&after| (before, after)));
-        pairs.find_map(|(before, after)| {
-            let [earlier, later] = [begins(before, after), begins(after, before)];
-            let enough = agree(&earlier) && agree(&later) && earlier.len().max(later.len()) >= AGREE;
-            let (end, begin) = (earlier.last()? + length, *later.first()?);
-            // Lags to either side are those of loads that repeat.
-            (enough && before * after >= 0 && end <= begin).then_some((usize::midpoint(end, begin), after - before))
-        })
-    }
 }
 
 /// Which frame and line belong together.

@@ -60,6 +60,8 @@ fn the_expected_error_holds_within_a_fifth() {
         "{sentence}"
     );
     assert!(sentence.contains(&format!("95 %: {most:.0}); smoothing = 4 would bring ")), "{sentence}");
+    let alone = design.expected_error_at(0.008).unwrap().of_single_frames().to_string();
+    assert_eq!(Some(alone.trim_end_matches('.')), sentence.split("; smoothing").next());
     design.input.smoothing = 4;
     let smoothed = design.expected_error_at(0.008).unwrap().to_string();
     assert!(smoothed.starts_with("At a noise of 0.8 % and smoothing = 4 expect the shear within "), "{smoothed}");

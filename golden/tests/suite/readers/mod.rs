@@ -261,7 +261,9 @@ fn columns_in_front_and_behind() {
     assert!(found.remark.unwrap().contains("columns 3 to 8, p0 to p5, are the taxels"));
     both(read(&format!("{names}{body}"), 2));
     refused(read(&format!("{names}{body}"), 3), &["line 1", "columns 3 to 8, p0 to p5", "leave --labels away"]);
-    refused(read(&body, 0), &["line 1", "3 columns more", "in front of the values?", "--labels 3", "--columns 1-6"]);
+    let sides = ["in front of the values?", "--labels 3", "--columns 1-6", "on either side? With --columns 2-7"];
+    refused(read(&body, 0), &["line 1", "3 columns more"]);
+    refused(read(&body, 0), &sides);
     both(read(&body, Layout { columns: Some([3, 8]), ..Layout::default() }));
     refused(read(&body, Layout { columns: Some([3, 7]), ..Layout::default() }), &["where 8"]);
     // Two arrays in a line.

@@ -86,6 +86,13 @@ fn check(what: &str, recipe: &Recipe, limits: [f64; 4]) -> Recorded {
     found
 }
 
+/// The same weights at each place, so that they repeat: a place earlier or later they fit nearly as well.
+#[test]
+fn weights_that_repeat_lack_no_frames() {
+    let recipe = Recipe { noise: 2.0, scale: 40.0, spread: 0.1, ..Recipe::new(200, Indenter::Ball) };
+    assert!(study(&recipe).1[3] < 2.0);
+}
+
 /// From seeds and indenters that no choice was made on.
 #[test]
 #[ignore = "writes results/recordings.csv; two minutes"]
