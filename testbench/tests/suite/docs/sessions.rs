@@ -7,6 +7,8 @@ use std::process::{Command, Output};
 
 use golden::design::Design;
 use golden::scene::{Scene, SceneFrame};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use tempfile::TempDir;
 
 use super::{Line, commands, lines, lines_of};
@@ -105,11 +107,11 @@ impl Session {
     }
 }
 
-/// Counts of an unloaded scanner: offsets, and noise of a count or two.
+/// Counts of an unloaded scanner: offsets, and white noise of a count or two.
 fn unloaded(taxels: usize) -> Vec<Vec<f64>> {
-    let reads =
-        |frame: usize, taxel: usize| (40 * ((5 * taxel) % 7) + (frame * 7919 + taxel * 104_729) % 101 % 5) as f64;
-    (0..60).map(|frame| (0..taxels).map(|taxel| reads(frame, taxel)).collect()).collect()
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let mut reads = |taxel: usize| (40 * ((5 * taxel) % 7) + random.random_range(0..5)) as f64;
+    (0..60).map(|_| (0..taxels).map(&mut reads).collect()).collect()
 }
 
 #[test]
