@@ -89,7 +89,8 @@ pub(super) fn join<'a>(
     if rows == 1 || of_length(&all, target.sensor.taxels()) > 0 {
         return Ok(None);
     }
-    let wrong = |line: usize, problem: String| FrameError::Shape { path: path.to_path_buf(), line, problem };
+    let shape = |(line, problem)| FrameError::Shape { path: path.to_path_buf(), line, problem };
+    let wrong = |line: usize, problem: String| shape((line, problem));
     // Numbers of the columns above frames, as pandas writes them: without them the rows are whole frames.
     let numbers = Sensor { rows: 1, ..target.sensor.clone() };
     let may_be_labelled = end.is_none() && (layout.labels == 1 || layout.labels == 0 && of_length(&all, columns) == 0);
@@ -97,17 +98,7 @@ pub(super) fn join<'a>(
     let is_labelled = labelled.is_some();
     all = labelled.unwrap_or(all);
     if of_length(&all, columns) < rows {
-        // The rows of the grid laid on its side.
-        return match of_length(&all, rows) {
-            lines if columns > 1 && lines > 0 && lines.is_multiple_of(columns) && rows != columns => Err(wrong(
-                all.iter().find(|line| line.row.is_some()).map_or(1, |line| line.number),
-                format!(
-                    "blocks of {columns} lines of {rows} values are the transposed grid: the sensor has {rows} rows of \
-                     {columns} columns; write a line for each row, or swap columns, rows and pitch_mm of the design"
-                ),
-            )),
-            _ => Ok(None),
-        };
+        return transposed(&all, of_length(&all, rows), &target.sensor).map_or(Ok(None), |problem| Err(shape(problem)));
     }
     let head = all.iter().find_map(|line| Some((line.content, line.row.as_ref()?)));
     let head = head.filter(|(_, row)| header::is_numbered(row, &numbers, true)).map(|(content, _)| content);
@@ -116,14 +107,14 @@ pub(super) fn join<'a>(
     let is_numbered = head.is_some() && others > 0 && others.is_multiple_of(rows);
     all.iter_mut().filter(|line| is_numbered && Some(line.content) == head).for_each(|line| line.row = None);
     if end.is_some() {
-        keep_width(&mut all, columns, layout.skip_bad).map_err(|(line, problem)| wrong(line, problem))?;
+        keep_width(&mut all, columns, layout.skip_bad).map_err(shape)?;
     }
     // Points between semicolons or tabs may separate thousands; no number has a control character.
     let is_marked = |line: &Line| line.row.is_some() && line.content.iter().any(|byte| b";\t".contains(byte));
     let separator = if all.iter().any(is_marked) { b';' } else { 0x1f };
     let unit = unit(&all);
     if !target.counts {
-        one_unit(&all, unit.as_ref()).map_err(|(line, problem)| wrong(line, problem))?;
+        one_unit(&all, unit.as_ref()).map_err(shape)?;
     }
     all = parted(all, columns, rows, if is_labelled { 0 } else { layout.first() });
     let (mut frames, mut run) = (Vec::new(), Vec::new());
@@ -131,6 +122,7 @@ pub(super) fn join<'a>(
     all.truncate(last);
     all.push(Line { number: last + layout.skip_lines, content: b"", row: None, label: None });
     let in_order: Vec<&[u8]> = all.iter().filter_map(|line| line.label).take(rows).collect();
+    let places = places(&all, &in_order, rows).map_err(shape)?;
     for (index, Line { number, content, row, label }) in all.iter().enumerate() {
         match row {
             // A row in the place of another is as good as damaged.
@@ -159,7 +151,8 @@ pub(super) fn join<'a>(
                 let whole = if found % rows == 0 || is_alone || found > 2 * rows { found / rows } else { 0 };
                 for frame in run[..whole * rows].chunks(rows) {
                     let damaged = frame.iter().find(|(_, row)| row.is_none());
-                    let joined = frame.iter().map_while(|(_, row)| row.as_deref()).collect::<Vec<_>>().join(&separator);
+                    let sorted = places.iter().map_while(|&row| frame[row].1.as_deref());
+                    let joined = sorted.collect::<Vec<_>>().join(&separator);
                     let problem =
                         || format!("this row of a block has no {columns} numbers, or the label of another row");
                     frames.push((frame[0].0, damaged.map_or(Ok(joined), |(line, _)| Err(wrong(*line, problem())))));
@@ -171,13 +164,45 @@ pub(super) fn join<'a>(
             }
         }
     }
-    let beside = match (is_labelled, is_numbered) {
-        (false, false) => "",
-        (false, true) => ", below numbers of the columns",
-        (true, _) => ", behind labels of the rows",
+    let beside = match (is_labelled, is_numbered, places.is_sorted()) {
+        (true, _, false) => ", behind numbers of the rows, which say which is which",
+        (true, ..) => ", behind labels of the rows",
+        (false, true, _) => ", below numbers of the columns",
+        (false, false, _) => "",
     };
     let labels = if is_labelled { 1 } else { layout.first() };
     Ok(Some(Blocks { frames, separator, labels, beside, unit }))
+}
+
+/// What is wrong where so many lines have as many values as the grid has rows: it lies on its side.
+fn transposed(all: &[Line], lines: usize, &Sensor { columns, rows, .. }: &Sensor) -> Option<(usize, String)> {
+    let is_whole = columns > 1 && lines > 0 && lines.is_multiple_of(columns) && rows != columns;
+    is_whole.then(|| {
+        (
+            all.iter().find(|line| line.row.is_some()).map_or(1, |line| line.number),
+            format!(
+                "blocks of {columns} lines of {rows} values are the transposed grid: the sensor has {rows} rows of {columns} \
+                 columns; write a line for each row, or swap columns, rows and pitch_mm of the design"
+            ),
+        )
+    })
+}
+
+/// The rows of a frame from the first of the grid on: by their numbers, where they have some, else as they come.
+fn places(all: &[Line], in_order: &[&[u8]], rows: usize) -> Result<Vec<usize>, (usize, String)> {
+    let number = |&row: &usize| str::from_utf8(in_order.get(row)?).ok()?.parse::<usize>().ok();
+    let mut places: Vec<usize> = (0..rows).collect();
+    places.sort_by_key(number);
+    let mut labelled = all.iter().skip_while(|line| line.label.is_none()).peekable();
+    let first = labelled.peek().map_or(1, |line| line.number);
+    let is_run_on = labelled.take_while(|line| line.label.is_some()).count() > rows;
+    let is_back = rows > 2 && places.iter().rev().is_sorted();
+    if is_run_on && !places.is_sorted() && !is_back {
+        let problem = "the numbers of the rows do not begin with the first or the last one, as if the file began within a frame: \
+                       skip the rows of that with --skip-lines N, or write a blank line between frames";
+        return Err((first, problem.to_owned()));
+    }
+    Ok(places)
 }
 
 /// The fields of a line behind so many labels and up to a last column, if they are nothing but numbers and readings that are
@@ -198,8 +223,8 @@ fn is_damaged(line: &[u8]) -> bool {
         && 2 * fields.iter().filter(|field| separator::number(field).is_some()).count() > fields.len()
 }
 
-/// Lines whose rows stand behind labels, words that are the same for each frame, or numbers from 0 or 1 on; nothing if they
-/// do not. A blank label, or a word beside numbers of the columns, is that of a header.
+/// Lines whose rows stand behind labels, words that are the same for each frame, or numbers from 0 or 1 on in any order;
+/// nothing if they do not. A blank label, or a word beside numbers of the columns, is that of a header.
 fn behind_labels<'a>(mut lines: Vec<Line<'a>>, numbers: &Sensor, rows: usize) -> Option<Vec<Line<'a>>> {
     let mut labels: Vec<&[u8]> = Vec::new();
     for line in &mut lines {
@@ -213,7 +238,7 @@ fn behind_labels<'a>(mut lines: Vec<Line<'a>>, numbers: &Sensor, rows: usize) ->
         }
     }
     let first = labels.get(..rows)?;
-    let counts = |from: usize| (from..).zip(first).all(|(number, label)| *label == number.to_string().as_bytes());
+    let counts = |from: usize| (from..from + rows).all(|number| first.contains(&number.to_string().as_bytes()));
     let are_words =
         first.iter().all(|label| no_number(label)) && (1..rows).all(|row| !first[..row].contains(&first[row]));
     let are_labels = (counts(0) || counts(1) || are_words) && labels.iter().all(|label| first.contains(label));

@@ -119,21 +119,29 @@ impl Header {
             at += run.len();
         }
         let shown = |[first, last]: [usize; 2]| format!("{} to {}", names[first - 1], names[last - 1]);
-        if layout.columns.is_some() {
-            return Ok(());
+        let differs = |[from, to]: [usize; 2], option: String, remedy: &str| {
+            Err(format!(
+                "the header names columns {from} to {to}, {}, for the taxels, and {option} takes others: {remedy}",
+                shown([from, to])
+            ))
+        };
+        if let Some([from, to]) = layout.columns {
+            return match runs[..] {
+                [run, ..] if !runs.contains(&[from, to]) => {
+                    let remedy = format!("leave --columns away, or the header with --skip-lines {}", self.line);
+                    differs(run, format!("--columns {from}-{to}"), &remedy)
+                }
+                [] if names.len() >= first + taxels => self.are_taxels(&kinds, target, first),
+                _ => Ok(()),
+            };
         }
-        let is_label = |name: &String| name.is_empty() || seconds(name).is_some();
         if runs.is_empty() && first == 0 && names.len() == taxels + 1 && is_label(&names[0]) {
             runs.push([2, taxels + 1]);
         }
         match runs[..] {
             [[from, to]] => {
                 if first > 0 && first != from - 1 {
-                    return Err(format!(
-                        "the header names columns {from} to {to}, {}, for the taxels, and --labels {first} takes others: \
-                         leave --labels away",
-                        shown([from, to])
-                    ));
+                    return differs([from, to], format!("--labels {first}"), "leave --labels away");
                 }
                 if from > 1 && first == 0 || names.len() > to {
                     self.remarks.push(format!(
@@ -147,29 +155,32 @@ impl Header {
                 let [left, right] = [a, b].map(|[from, to]| format!("--columns {from}-{to} ({})", shown([from, to])));
                 return Err(format!("a line holds several arrays: say which with {left} or {right}"));
             }
-            [] if names.len() == first + taxels => {
-                // Names without a number among numbered ones, or a time, are no taxels.
-                let values = first..first + taxels;
-                let others = values.clone().filter(|&column| !kinds[column].contains('#')).count();
-                let are_numbered = others < taxels - others;
-                let is_other = |&column: &usize| {
-                    !target.dead.contains(&(column - first))
-                        && !kinds[column].contains('#')
-                        && (are_numbered || column == first && is_label(&names[column]))
-                };
-                if let Some(column) = values.clone().find(is_other) {
-                    return Err(format!(
-                        "{} taxels are named, the design has {taxels}: column {}, {:?}, is none; correct columns and rows of \
-                         the design, or give each taxel a column and name dead ones in sensor.dead",
-                        taxels - values.filter(is_other).count(),
-                        column + 1,
-                        names[column]
-                    ));
-                }
-            }
+            [] if names.len() == first + taxels => self.are_taxels(&kinds, target, first)?,
             _ => {}
         }
         Ok(())
+    }
+
+    /// Refuses columns, behind so many others, of which one is named as no taxel is: without a number among numbered ones, or as
+    /// a time.
+    fn are_taxels(&self, kinds: &[String], target: &Target, before: usize) -> Result<(), String> {
+        let taxels = target.sensor.taxels();
+        let values = before..before + taxels;
+        let others = values.clone().filter(|&column| !kinds[column].contains('#')).count();
+        let are_numbered = others < taxels - others;
+        let is_other = |&column: &usize| {
+            !target.dead.contains(&(column - before))
+                && !kinds[column].contains('#')
+                && (are_numbered || column == before && is_label(&self.names[column]))
+        };
+        let Some(column) = values.clone().find(is_other) else { return Ok(()) };
+        Err(format!(
+            "{} taxels are named, the design has {taxels}: column {}, {:?}, is none; correct columns and rows of the design, or \
+             give each taxel a column and name dead ones in sensor.dead",
+            taxels - values.filter(is_other).count(),
+            column + 1,
+            self.names[column]
+        ))
     }
 
     /// The column of a taxel, from 1, behind so many of labels.
@@ -184,6 +195,11 @@ impl Header {
         names.sort();
         names.len() < FEWEST_NUMBERED || names.windows(2).any(|pair| pair[0] == pair[1])
     }
+}
+
+/// Whether a name is that of a label, not of a value.
+fn is_label(name: &str) -> bool {
+    name.is_empty() || seconds(name).is_some()
 }
 
 /// Whether a line has the numbers of all taxels, or of their columns or rows, and no other number. Alone, without a word or a
@@ -210,20 +226,22 @@ pub(super) fn is_numbered(fields: &[&[u8]], sensor: &Sensor, alone: bool) -> boo
 
 /// Which of these rows are a header: the first, and those that are the same between recordings. Nothing if it is a frame.
 ///
-/// Its whole numbers ascend, or differ and stand behind a word where others have a number. They are unlike the row below: a
-/// frame is much like the next one.
+/// Its whole numbers ascend or descend, or differ where others have a fraction, or where others stand behind a number and it
+/// behind a word. They are unlike the row below: a frame is much like the next one.
 pub(super) fn guessed(rows: &[Vec<f64>], labels: &[Label]) -> Option<Vec<bool>> {
     let first = rows.first()?;
     let again: Vec<bool> = (0..rows.len()).map(|row| rows[row] == *first && labels[row] == labels[0]).collect();
     let others = || (0..rows.len()).filter(|&row| !again[row]);
-    let ascend = ascends(first) && !others().any(|row| ascends(&rows[row]));
+    let is_sorted = is_in_turn(first) && !others().any(|row| is_in_turn(&rows[row]));
     // Numbers of columns differ; counts of a frame often do not.
     let is_number = |row: usize| labels[row] == Label::Number;
-    let is_labelled = is_whole(first) && differ(first) && !is_number(0) && others().all(is_number);
+    let differs = is_whole(first) && differ(first);
+    let is_labelled = differs && !is_number(0) && others().all(is_number);
+    let is_alone = differs && !others().any(|row| is_whole(&rows[row]));
     let is_unlike = |row: usize| correlation(first.iter().copied().zip(rows[row].iter().copied())) < ALIKE;
     let is_header = others().next().is_some_and(is_unlike)
         && !again.windows(2).any(|pair| pair[0] && pair[1])
-        && (ascend || is_labelled);
+        && (is_sorted || is_labelled || is_alone);
     is_header.then_some(again)
 }
 
@@ -241,6 +259,11 @@ fn differ(row: &[f64]) -> bool {
 /// Whether values are whole and each is larger than the one before, as the numbers of a sensor's taxels with gaps.
 pub(super) fn ascends(row: &[f64]) -> bool {
     is_whole(row) && row.windows(2).all(|pair| pair[1] > pair[0])
+}
+
+/// Likewise in either direction.
+fn is_in_turn(row: &[f64]) -> bool {
+    ascends(row) || is_whole(row) && row.windows(2).all(|pair| pair[1] < pair[0])
 }
 
 /// Names with a colon between two numbers that stand for a row and a column: a letter and a number as `A1`, or digits side by

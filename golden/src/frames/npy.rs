@@ -33,8 +33,10 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Array, String> {
     let described = entry("descr").ok_or_else(incomplete)?;
     let number = described.strip_prefix('\'').and_then(|rest| rest.split_once('\'')).map(|(number, _)| number);
     let Some(kind) = number.and_then(Kind::new) else {
-        let shown: String = described.chars().filter(|letter| !letter.is_control()).take(20).collect();
-        return Err(format!("its values, {shown}, are no plain numbers; use an array of floats or integers"));
+        let shown: String =
+            number.unwrap_or(described).chars().filter(|letter| !letter.is_control()).take(20).collect();
+        let objects = if shown == "|O" { " but pickled objects, as of rows of other lengths" } else { "" };
+        return Err(format!("its values, {shown}, are no plain numbers{objects}; use an array of floats or integers"));
     };
     let fortran_order = entry("fortran_order").ok_or_else(incomplete)?.starts_with("True");
     let shape = entry("shape").and_then(|rest| rest.strip_prefix('(')?.split_once(')')).ok_or_else(incomplete)?.0;
@@ -145,7 +147,11 @@ mod tests {
         assert_eq!(read("<f4", &[1.5_f32, -8.25].map(f32::to_le_bytes).concat()), Ok(vec![1.5, -8.25]));
         assert_eq!(read(">f8", &[1e-300, 2.0].map(f64::to_be_bytes).concat()), Ok(vec![1e-300, 2.0]));
         assert_eq!(read("<i8", &[-3_i64, 9].map(i64::to_le_bytes).concat()), Ok(vec![-3.0, 9.0]));
-        for (descr, part) in [("<c16", "no plain numbers"), ("<U4", "no plain numbers"), ("<i4", "4 bytes of data")] {
+        for (descr, part) in [
+            ("<c16", "no plain numbers"),
+            ("|O", "|O, are no plain numbers but pickled objects"),
+            ("<i4", "4 bytes of data"),
+        ] {
             let message = read(descr, &[0; 4]).unwrap_err();
             assert!(message.contains(part), "{message}");
         }
@@ -155,7 +161,7 @@ mod tests {
     fn a_message_is_one_line_whatever_the_header_holds() {
         let header = "{'descr': '\n<f8\u{7}', 'fortran_order': False, 'shape': (2,), }";
         let said = parse(&of(header, &[0; 16])).map(|array| array.values).expect_err("no kind of number");
-        assert!(said.contains("'<f8'") && !said.contains(char::is_control), "{said:?}");
+        assert!(said.contains("<f8,") && !said.contains(char::is_control), "{said:?}");
     }
 
     #[test]

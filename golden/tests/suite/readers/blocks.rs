@@ -93,6 +93,27 @@ fn labels_of_rows_keep_their_order() {
     assert_eq!((some.frames.len(), some.skipped), (2, vec![1]));
 }
 
+/// Numbers of rows say which is which; a file that begins within a frame is none of these.
+#[test]
+fn rows_stand_by_their_numbers() {
+    let mut tall = pad("");
+    [tall.sensor.columns, tall.sensor.rows] = [2, 3];
+    let read = |text: &str, labels: usize| read_bytes("f.csv", text.as_bytes(), &tall, labels);
+    let rows = |numbers: [u8; 3]| numbers.map(|row| format!("{row},{row},{row}5\n")).concat();
+    let expected = [0.0, 5.0, 1.0, 15.0, 2.0, 25.0];
+    for (numbers, between) in [([2, 1, 0], ""), ([2, 1, 0], "\n"), ([1, 2, 0], "\n"), ([0, 2, 1], "\n")] {
+        for labels in [0, 1] {
+            let found = read(&[rows(numbers), rows(numbers)].join(between), labels).unwrap();
+            assert!(found.frames == [expected; 2], "{numbers:?} {between:?}");
+            assert!(found.remark.unwrap().contains("numbers of the rows, which say which is which"));
+        }
+    }
+    refused(
+        read(&[rows([1, 2, 0]), rows([1, 2, 0])].concat(), 1),
+        &["line 1", "began within a frame", "--skip-lines N"],
+    );
+}
+
 /// With columns behind the values, a decimal comma would shift them.
 #[test]
 fn blocks_with_columns_have_rows_of_one_width() {

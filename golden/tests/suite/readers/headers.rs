@@ -57,15 +57,18 @@ fn a_header_of_sensor_numbers_is_none_of_the_frames() {
         // With gaps, and behind a word.
         (format!("3,5,7,11,12,20\n{LINES}"), 0),
         (format!("taxel,3,5,7,11,12,20\n{}", LINES.replace("-7.5", "0,-7.5").replace("-8", "1,-8")), 1),
-        // In the order of the wiring.
+        // From the last one on, and in the order of the wiring.
+        (format!("20,12,11,7,5,3\n{LINES}"), 0),
+        (format!("20,3,5,12,11,7\n{LINES}"), 0),
         (format!("electrode,20,3,5,12,11,7\n{}", LINES.replace("-7.5", "0,-7.5").replace("-8", "1,-8")), 1),
     ] {
         let found = both(read(&text, labels));
         assert!(found.remark.is_some_and(|remark| remark.contains("line 1") && remark.contains("header")), "{text:?}");
     }
-    // Frames whose values happen to rise are frames, and so are those with words as labels.
-    let rising = "1,2,3,4,5,7\n1,2,3,4,6,9\n";
-    assert_eq!(read(rising, 0).unwrap().frames.len(), 2);
+    // Frames whose values happen to rise or to fall are frames, and so are those with words as labels.
+    for rising in ["1,2,3,4,5,7\n1,2,3,4,6,9\n", "7,5,4,3,2,1\n9,6,4,3,2,1\n", "20,3,5,12,11,7\n20,3.5,5,12,11,7\n"] {
+        assert_eq!(read(rising, 0).unwrap().frames.len(), 2, "{rising:?}");
+    }
     assert_eq!(read("left,1,5,3,4,5,7\nright,1,2,3,4,6,9\n", 1).unwrap().frames.len(), 2);
     let mut lines = FrameLines::new(Path::new("port"), &pad(""), 0);
     assert!(lines.frame(b"3,5,7,11,12,20\n").unwrap().is_none() && lines.remark().is_some());

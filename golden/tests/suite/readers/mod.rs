@@ -261,17 +261,27 @@ fn columns_in_front_and_behind() {
     assert!(found.remark.unwrap().contains("columns 3 to 8, p0 to p5, are the taxels"));
     both(read(&format!("{names}{body}"), 2));
     refused(read(&format!("{names}{body}"), 3), &["line 1", "columns 3 to 8, p0 to p5", "leave --labels away"]);
+    let taken = |pair| Layout { columns: Some(pair), ..Layout::default() };
+    both(read(&format!("{names}{body}"), taken([3, 8])));
+    for text in [format!("{names}{body}"), format!("{}{body}", names.replace("t (ms)", "temp"))] {
+        let with = ["line 1", "columns 3 to 8, p0 to p5", "--columns 2-7 takes others", "--skip-lines 1"];
+        refused(read(&text, taken([2, 7])), &with);
+    }
+    let gap = names.replace("p3", "gap");
+    refused(read(&format!("{gap}{body}"), taken([2, 7])), &["column 2, \"frame\", is none"]);
+    refused(read(&format!("{gap}{body}"), taken([3, 8])), &["column 6, \"gap\", is none"]);
     let sides = ["in front of the values?", "--labels 3", "--columns 1-6", "on either side? With --columns 2-7"];
     refused(read(&body, 0), &["line 1", "3 columns more"]);
     refused(read(&body, 0), &sides);
-    both(read(&body, Layout { columns: Some([3, 8]), ..Layout::default() }));
-    refused(read(&body, Layout { columns: Some([3, 7]), ..Layout::default() }), &["where 8"]);
+    both(read(&body, taken([3, 8])));
+    refused(read(&body, taken([3, 7])), &["where 8"]);
     // Two arrays in a line.
     let two = "-7.5,-1,0,2,-3,5,1,1,1,1,1,1\n-8,-2,1,0.5,-4,6,1,1,1,1,1,1\n";
     refused(read(two, 0), &["two arrays in a line?", "--columns 1-6", "--columns 7-12"]);
     let names = "l0,l1,l2,l3,l4,l5,r0,r1,r2,r3,r4,r5\n";
     refused(read(&format!("{names}{two}"), 0), &["several arrays", "--columns 1-6 (l0 to l5)", "--columns 7-12 (r0"]);
-    both(read(&format!("{names}{two}"), Layout { columns: Some([1, 6]), ..Layout::default() }));
+    both(read(&format!("{names}{two}"), taken([1, 6])));
+    refused(read(&format!("{names}{two}"), taken([4, 9])), &["columns 1 to 6, l0 to l5", "--columns 4-9 takes others"]);
     // Names of rows and columns.
     both(read(
         &format!("time,r0c0,r0c1,r0c2,r1c0,r1c1,r1c2\n{}", LINES.replace("-7.5", "0,-7.5").replace("-8", "1,-8")),
