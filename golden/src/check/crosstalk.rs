@@ -88,25 +88,29 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>]) -> Option<Found> {
     let of = count(found.len());
     let has = if known > 0.0 { format!(", and sensor.crosstalk is {known}") } else { String::new() };
     let (size, what) = (excess.abs(), if excess > 0.0 { "large" } else { "small" });
-    let (its_own, remedy) = if is_equal {
-        (String::new(), format!("Write sensor.crosstalk = {row}"))
+    let (reads, remedy) = if is_equal {
+        (format!("{:.1} % of its row and of its column", 100.0 * row), format!("Write sensor.crosstalk = {row}"))
     } else {
         let Factors { row: of_row, column: of_column, total } = crosstalk.factors();
         let of_frame = if total > 0.0 { format!(", and add {total:.5} of its frame's") } else { String::new() };
+        let named = |of: [f64; 2], say: &dyn Fn(f64, &str) -> String| {
+            let lines = of.into_iter().zip(["row", "column"]).filter(|(share, _)| *share > 0.0);
+            lines.map(|(share, line)| say(share, line)).collect::<Vec<_>>().join(" and ")
+        };
+        let sums = named([of_row, of_column], &|share, line| format!("{share:.4} of its {line}'s sum"));
         (
-            format!("{:.1} % ", 100.0 * column),
+            named([row, column], &|share, line| format!("{:.1} % of its {line}", 100.0 * share)),
             format!(
                 "sensor.crosstalk corrects equal shares alone: lessen it in the read-out, or before `sptfra` reads the frames \
-                 subtract from each taxel {of_row:.4} of its row's sum and {of_column:.4} of its column's{of_frame}"
+                 subtract from each taxel {sums}{of_frame}"
             ),
         )
     };
     Some(Found {
         shares: [row, column],
         message: format!(
-            "crosstalk: in {of} of single contacts each taxel reads {:.1} % of its row and {its_own}of its column as well{has}; \
-             F_z comes out about {size:.0} % too {what}. {remedy}",
-            100.0 * row
+            "crosstalk: in {of} of single contacts each taxel reads {reads} as well{has}; F_z comes out about {size:.0} % too \
+             {what}. {remedy}"
         ),
     })
 }

@@ -92,7 +92,10 @@ pub(super) fn check(design: &Design, matrices: &Matrices, loaded: &[Vec<f64>]) -
         ];
         // What is likelier comes first.
         let [first, second] = if usual > SUSPICIOUS { [depth, order] } else { [order, depth] };
-        format!("the normal forces alternate like a checkerboard, {percent:.0} % of them pull: {first}, or {second}?")
+        format!(
+            "the normal forces alternate like a checkerboard, {percent:.0} % of them pull: {first}, or {second}, or did \
+             something lie on the sensor when it was tared?"
+        )
     })
 }
 

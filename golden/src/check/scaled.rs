@@ -14,6 +14,10 @@ const AT_MOST: usize = 2;
 /// Values are the same but for this share of them, and sums of printed ones but for that.
 const SAME: f64 = 1e-9;
 const PRINTED: f64 = 1e-4;
+/// Norms of values that are rounded to few decimals are the same but for this share, if shapes differ.
+const ROUNDED: f64 = 0.02;
+/// Most decimals of values that are called rounded.
+const DECIMALS: i32 = 6;
 /// Largest readings of one load differ by less than this factor, whatever the direction that it pushes in.
 const OTHER_SHAPE: f64 = 1.5;
 
@@ -57,7 +61,11 @@ fn of_all(some: &[&Vec<f64>]) -> Option<String> {
         // Or the shapes differ as those of one load do not.
         let [most, least] = [f64::max, f64::min].map(|of| some.iter().map(|frame| largest(frame)).reduce(of));
         let differ = most.zip(least).is_some_and(|(most, least)| most > OTHER_SHAPE * least);
-        let same = |(_, of): &&Norm| same(*of, PRINTED) && (differ || is_usual(of(first)));
+        let rounding = step(some).map_or(0.0, |step| step * (first.len() as f64).sqrt());
+        let same = |(_, of): &&Norm| {
+            let share = (rounding / of(first)).min(ROUNDED);
+            same(*of, PRINTED) && (differ || is_usual(of(first))) || differ && same(*of, share)
+        };
         let (what, of) = NORMS.iter().filter(same).min_by_key(|(_, of)| !alike(1.0, of(first), PRINTED))?;
         (*what, of(first))
     };
@@ -67,6 +75,13 @@ fn of_all(some: &[&Vec<f64>]) -> Option<String> {
          readings as the sensor gives them, or scale all frames alike",
         some.len()
     ))
+}
+
+/// The power of ten of which all values are multiples; nothing if they have many decimals.
+fn step(some: &[&Vec<f64>]) -> Option<f64> {
+    let is_multiple = |value: &f64, per_one: f64| ((value * per_one).round() - value * per_one).abs() < SAME * per_one;
+    let holds = |per_one: &f64| some.iter().all(|frame| frame.iter().all(|value| is_multiple(value, *per_one)));
+    (0..=DECIMALS).map(|decimals| 10_f64.powi(decimals)).find(holds).map(f64::recip)
 }
 
 /// Whether programs scale to this value: one of a single digit, or the end of whole numbers of some bits.

@@ -455,7 +455,16 @@ fn frames_that_are_each_scaled_by_their_own_peak() {
             frame.iter().map(|pa| 77.7 * pa / root(&frame)).collect()
         })
         .collect();
+    let of_sum = |whole: f64, decimals: f64| -> Vec<Vec<f64>> {
+        let each = |frame: &Vec<f64>| {
+            let sum = sum(frame);
+            frame.iter().map(|pa| (decimals * whole * pa / sum).round() / decimals).collect()
+        };
+        sharpened.iter().map(each).collect()
+    };
     for (frames, same) in [
+        (of_sum(4000.0, 1.0), "sum, "),
+        (of_sum(1.0, 1000.0), "sum, "),
         (scaled(&|frame| [0.0, peak(frame)]), "largest reading, 1"),
         (scaled(&|frame| [0.0, peak(frame) / 255.0]), "largest reading, 255"),
         (scaled(&ends), "largest reading, 1"),
