@@ -17,7 +17,7 @@ from .forces import Forces
 class Finding(NamedTuple):
     """One thing that is suspicious in frames, with its likely cause and what to change."""
 
-    #: What it is about: empty, rest, range, sign, no_tension, tension, tare, dead, order, stuck, scaled,
+    #: What it is about: empty, rest, range, sign, no_tension, tension, tare, dead, order, stuck, scaled, noise,
     #: contacts or crosstalk (`docs/reference/files.md`).
     kind: str
     message: str

@@ -13,6 +13,7 @@ mod order;
 mod print;
 mod quiet;
 mod rest;
+mod restarts;
 mod scaled;
 mod unit;
 
@@ -57,6 +58,8 @@ pub enum Kind {
     Stuck,
     /// Each frame is divided by its own largest reading.
     Scaled,
+    /// Noise above the stated one restarts the average.
+    Noise,
     /// More contacts press than one, in a design that counts them and solves one.
     Contacts,
 }
@@ -291,6 +294,9 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
     let mut found = |kind, message| findings.push(Finding { kind, message });
     for message in ends::check(design, frames, loaded.len(), peak) {
         found(Kind::Stuck, message);
+    }
+    if let Some(message) = restarts::check(design, &loaded) {
+        found(Kind::Noise, message);
     }
     // Frames that are wrong in these ways seem to have contacts that nobody pressed.
     let misread = pascals

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::designs::design;
 use golden::check::{Finding, Kind, check};
-use golden::design::{Curve, Design, Tension};
+use golden::design::{Curve, Design, Input, Tension};
 use golden::frames::read_recording;
 use golden::matrices::Matrices;
 use golden::scene::{Converter, Scene, SensorErrors};
@@ -501,6 +501,27 @@ fn noise_about_the_tare_is_no_tension() {
         .collect();
     let findings = look(&reads, &noisy);
     assert!(findings.iter().all(|finding| finding.kind != Kind::Tension), "{findings:?}");
+}
+
+/// Noise as it is stated, or a contact that moves, is no reason to speak of the noise.
+#[test]
+fn noise_that_restarts_the_average() {
+    let mut design = design("sensor1-fast");
+    (design.input.smoothing, design.input.noise) = (4, 0.005);
+    let frames = |noise: f64, turn: f64| {
+        let mut scene = Scene::standing(&design.sensor);
+        scene.sweep_deg = (0..40).map(|frame| turn * f64::from(frame)).collect();
+        scene.sensor_errors = SensorErrors { seed: 3, noise, ..SensorErrors::default() };
+        stress(&design, &scene)
+    };
+    let words =
+        ["noise restarts the average in 3", "of 40 frames", "6 times sensor.noise = 0.005", "--unloaded --loaded"];
+    found(&design, &frames(0.02, 0.0), &[Kind::Noise], &words);
+    for (noise, turn) in [(0.005, 0.0), (0.005, 30.0)] {
+        found(&design, &frames(noise, turn), &[], &[]);
+    }
+    let still = Design { input: Input { smoothing: 0, ..design.input.clone() }, ..design.clone() };
+    found(&still, &frames(0.02, 0.0), &[], &[]);
 }
 
 /// An array of as many frames as rows and columns says which axis the frames are along, if that shows.
