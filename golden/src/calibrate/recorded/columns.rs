@@ -16,7 +16,7 @@ pub(super) enum Meaning {
 
 /// What the columns of a header are, and what their unit is worth in newtons or pascals.
 pub(super) fn meanings(names: &[String], remarks: &mut Vec<String>) -> Result<Vec<Option<(Meaning, f64)>>, String> {
-    let mut unused = Vec::new();
+    let (mut unused, mut units) = (Vec::new(), Vec::new());
     let mut found = Vec::new();
     for name in names {
         if let Some(unit) = seconds(name) {
@@ -27,18 +27,21 @@ pub(super) fn meanings(names: &[String], remarks: &mut Vec<String>) -> Result<Ve
         let (base, behind) = name.split_at(name.find(['(', '[', '{', '/']).unwrap_or(name.len()));
         let behind = behind.trim_start_matches(|c: char| !c.is_alphanumeric());
         let (mut base, mut unit) = (base.trim(), behind.split([')', ']', '}']).next().unwrap_or_default().trim());
-        if meaning(base).is_none()
+        if unit.is_empty()
             && let Some((before, after)) = base.rsplit_once(['_', ' '])
             && force_or_pressure(after).is_some()
         {
             (base, unit) = (before, after);
         }
         let Some(meaning) = meaning(base) else {
+            // Of a name in another language, or of none, the unit tells.
+            units.extend(force_or_pressure(if unit.is_empty() { base } else { unit }).map(|unit| (found.len(), unit)));
             unused.push(name.as_str());
             found.push(None);
             continue;
         };
-        let is_mass = base.to_lowercase().contains("mass");
+        // Of these the usual unit is no newton.
+        let is_mass = ["mass", "weight"].iter().any(|word| base.to_lowercase().contains(word));
         let factor = match (unit, meaning) {
             ("", Meaning::Force(_)) if is_mass => return Err(format!("column {name:?} has no unit")),
             ("", _) | (_, Meaning::Contact | Meaning::Time) => 1.0,
@@ -53,6 +56,18 @@ pub(super) fn meanings(names: &[String], remarks: &mut Vec<String>) -> Result<Ve
             },
         };
         found.push(Some((meaning, factor)));
+    }
+    let is_measured = |column: &Option<(Meaning, f64)>| {
+        column.is_some_and(|(meaning, _)| matches!(meaning, Meaning::Force(_) | Meaning::Pressure))
+    };
+    if let ([(column, (factor, is_pressure))], false) = (&units[..], found.iter().any(is_measured)) {
+        found[*column] = Some((if *is_pressure { Meaning::Pressure } else { Meaning::Force(2) }, *factor));
+        unused.retain(|name| *name != names[*column]);
+        remarks.push(format!(
+            "column {:?} is taken for {}",
+            names[*column],
+            if *is_pressure { "the pressure" } else { "F_z" }
+        ));
     }
     for axis in 0..3 {
         let same = found.iter().flatten().filter(|(meaning, _)| *meaning == Meaning::Force(axis)).count();

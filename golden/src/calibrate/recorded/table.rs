@@ -238,7 +238,12 @@ fn read(path: &Path, table: &Table<'_>, example: &str, guess: &Guess) -> Result<
             "F_x, F_y and F_z in newtons"
         };
         let at = named.iter().position(Option::is_some).unwrap_or(0) + 1;
-        remarks.push(format!("no header names the columns: from column {at} on they are taken for {what}"));
+        remarks.push(match &table.names[..] {
+            [] => format!("no header names the columns: from column {at} on they are taken for {what}"),
+            names => {
+                format!("the header names neither quantity nor unit, {}: it is taken for {what}", names.join(", "))
+            }
+        });
         if timestamp(&String::from_utf8_lossy(table.rows[0].1[0])).is_some() {
             named[0] = Some((Meaning::Time, 1.0));
         }

@@ -32,6 +32,9 @@ fn columns_units_and_blanks() {
         ("weight (g)\n\"550,5\"\n", z(&[Some(0.550_5 * 9.806_65)])),
         ("F_z,\n5,\n", z(&[Some(5.0)])),
         ("load\nkN\n0.001\n0.002\n", z(&[Some(1.0), Some(2.0)])),
+        ("Gewicht [g]\n550\n", z(&[Some(0.550 * 9.806_65)])),
+        ("t (s),Kraft_mN\n0,5\n", z(&[Some(5e-3)])),
+        ("kg\n2\n", z(&[Some(2.0 * 9.806_65)])),
         ("# Normal force (N)\n5\n7\n", z(&[Some(5.0), Some(7.0)])),
         ("5\n\n7\n", z(&[Some(5.0), None, Some(7.0)])),
         ("0 5.5\n1 6.5\n", z(&[Some(5.5), Some(6.5)])),
@@ -61,6 +64,7 @@ fn columns_units_and_blanks() {
         assert_eq!(found.forces, z(&[Some(1.0), Some(2.0)]));
     }
     assert!(forces("3\n").unwrap().remarks.iter().any(|line| line.contains("taken for F_z in newtons")));
+    assert!(forces("Kraft\n3\n").unwrap().remarks.iter().any(|line| line.contains("neither quantity nor unit, Kraft")));
 }
 
 #[test]
@@ -78,6 +82,8 @@ fn what_nobody_can_tell_is_refused() {
         ("1,2,3,4,5\n# a,b,F_z,d,e\n6,7,8,9,1\n", ["5 columns without", "nobody can tell", "header"]),
         ("a,b\n1,2\n", ["the columns a, b", "nobody can tell", "write a header"]),
         ("mass\n5\n", ["\"mass\" has no unit", "name the unit", "kg"]),
+        ("weight\n5\n", ["\"weight\" has no unit", "name the unit", "kg"]),
+        ("a (N),b (N)\n1,2\n", ["the columns a (N), b (N)", "nobody can tell", "write a header"]),
         ("F_z (stone)\n5\n", ["\"stone\" is no unit of a force", "name the unit", "mN"]),
         ("F_z (kPa)\n5\n", ["\"kPa\" is no unit of a force", "name the unit", "mN"]),
         ("F_z\n5\nheavy\n", ["line 3, column 1", "\"heavy\" is no finite", "leave blank"]),
