@@ -152,6 +152,7 @@ impl AtRest {
             touched: false,
         };
         rest.warnings = rest.touches(design, usual);
+        rest.warnings.extend(rest.others_than_rest(frames));
         rest.touched = !rest.warnings.is_empty();
         rest.warnings.extend(rest.others(frames, &silent, usual));
         Ok(rest)
@@ -198,6 +199,29 @@ impl AtRest {
             ));
         }
         said
+    }
+
+    /// Frames that read otherwise than nearly all, as a first one of zeros does.
+    fn others_than_rest(&self, frames: &[Vec<f64>]) -> Option<String> {
+        let middles: Vec<f64> =
+            (0..self.taxels.len()).map(|taxel| median(frames.iter().map(|frame| frame[taxel]))).collect();
+        let apart = |frame: &Vec<f64>| {
+            let live = self.taxels.iter().filter(|each| self.works(each.taxel));
+            median(live.map(|each| (frame[each.taxel] - middles[each.taxel]).abs()))
+        };
+        let apart: Vec<f64> = frames.iter().map(apart).collect();
+        let least = FAR * median(apart.iter().copied());
+        let far: Vec<usize> = (0..frames.len()).filter(|&frame| apart[frame] > least).map(|frame| frame + 1).collect();
+        (least > 0.0 && !far.is_empty() && FAR * far.len() as f64 <= frames.len() as f64).then(|| {
+            format!(
+                "{} of {} read otherwise than all others, the first is frame {}, by {:.1}: leave them out, such as lines at the \
+                 beginning with --skip-lines",
+                far.len(),
+                counted(frames.len(), "frame"),
+                far[0],
+                apart[far[0] - 1]
+            )
+        })
     }
 
     /// Signs that the recording does not suit.

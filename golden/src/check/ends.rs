@@ -11,6 +11,8 @@ const BELOW: f64 = 0.97;
 const STEPS: f64 = 3.0;
 /// A converter that ends this many times below the full scale is none.
 const WITHIN: f64 = 8.0;
+/// So many readings of one frame are no peak: such frames, so many of them, are cut off wherever the end is.
+const FLAT: usize = 4;
 /// A taxel that reads the same in frames whose loads differ by this share reads no more than that.
 const OTHER_LOAD: f64 = 0.1;
 
@@ -24,11 +26,12 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: usize, peak: f
         let farthest = magnitude(own.map(|(taxel, &value)| design.input.to_pa(taxel, value)));
         let is_larger = farthest >= peak;
         let least = if is_larger { full_scale / WITHIN } else { PULL * peak };
-        if farthest >= full_scale || farthest < least {
-            return None;
-        }
         let magnitudes = frames.iter().map(|frame| frame.iter().map(|&value| value * sign));
         let (end, readings) = end_of_range(&magnitudes, 0.0)?;
+        let flat = magnitudes.filter(|frame| frame.clone().filter(|&value| value >= end).count() >= FLAT).count();
+        if farthest >= full_scale || farthest < least && (!is_larger || flat < FLAT) {
+            return None;
+        }
         let what = format!("{readings} readings of {} are exactly {}, the largest", count(loaded), end * sign);
         Some(if is_larger {
             format!(

@@ -177,7 +177,8 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
         found(kind, message);
         return findings;
     }
-    if let Some(message) = scaled::check(frames) {
+    let live: Vec<Vec<f64>> = frames.iter().map(|frame| without(frame, &design.input.dead)).collect();
+    if let Some(message) = scaled::check(&live) {
         found(Kind::Scaled, message);
         return findings;
     }
@@ -239,7 +240,9 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
         let remedy = match (counts, whole) {
             (true, _) => format!("change {}", scale.sign),
             (false, true) => "write sensor.pa_per_count, what a count is worth, with a minus".to_owned(),
-            (false, false) => "write sensor.pa_per_count = -1.0".to_owned(),
+            (false, false) => {
+                "write sensor.pa_per_count = -1.0; where a header names a unit, its pascals with a minus".to_owned()
+            }
         };
         found(
             Kind::Sign,
@@ -308,6 +311,12 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
         findings.push(Finding { kind: Kind::Contacts, message });
     }
     findings
+}
+
+/// A frame with nothing in the place of dead taxels.
+fn without(frame: &[f64], dead: &[usize]) -> Vec<f64> {
+    let value = |(taxel, &value): (usize, &f64)| if dead.contains(&taxel) { 0.0 } else { value };
+    frame.iter().enumerate().map(value).collect()
 }
 
 fn largest(frame: &[f64]) -> f64 {

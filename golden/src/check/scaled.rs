@@ -61,7 +61,8 @@ fn of_all(some: &[&Vec<f64>]) -> Option<String> {
         // Or the shapes differ as those of one load do not.
         let [most, least] = [f64::max, f64::min].map(|of| some.iter().map(|frame| largest(frame)).reduce(of));
         let differ = most.zip(least).is_some_and(|(most, least)| most > OTHER_SHAPE * least);
-        let rounding = step(some).map_or(0.0, |step| step * (first.len() as f64).sqrt());
+        // Many small values are rounded to the same side.
+        let rounding = step(some).map_or(0.0, |step| 0.5 * step * first.len() as f64);
         let same = |(_, of): &&Norm| {
             let share = (rounding / of(first)).min(ROUNDED);
             same(*of, PRINTED) && (differ || is_usual(of(first))) || differ && same(*of, share)

@@ -503,6 +503,26 @@ fn noise_about_the_tare_is_no_tension() {
     assert!(findings.iter().all(|finding| finding.kind != Kind::Tension), "{findings:?}");
 }
 
+/// A converter whose range ends far below the full scale flattens most contacts.
+#[test]
+fn many_readings_at_the_end_of_a_small_range() {
+    let design = design("sensor1-fast");
+    let frames = frames(&design);
+    let peak = frames.iter().flatten().fold(0.0_f64, |peak, pa| peak.max(pa.abs()));
+    let end = design.hardware.full_scale_pa / 20.0;
+    let clipped = changed(&frames, |pa| (end * 4.0 / peak * pa).max(-end));
+    assert!(look(&design, &clipped).iter().any(|finding| finding.kind == Kind::Stuck), "{:?}", look(&design, &clipped));
+}
+
+/// A dead taxel's reading is none that frames have in common.
+#[test]
+fn a_dead_taxel_scales_no_frame() {
+    let mut design = design("sensor1-fast");
+    design.input.dead = vec![0];
+    let dead: Vec<Vec<f64>> = frames(&design).into_iter().map(|frame| [&[-9e9], &frame[1..]].concat()).collect();
+    assert!(look(&design, &dead).iter().all(|finding| finding.kind != Kind::Scaled));
+}
+
 /// Noise as it is stated, or a contact that moves, is no reason to speak of the noise.
 #[test]
 fn noise_that_restarts_the_average() {

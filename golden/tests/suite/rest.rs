@@ -144,6 +144,9 @@ fn a_load_in_an_unloaded_recording_is_warned_of() {
     };
     assert!(warnings(&touched(60)).contains("did something touch"), "{}", warnings(&touched(60)));
     assert!(warnings(&touched(0)).contains("does something lie"), "{}", warnings(&touched(0)));
+    let begins = frames(100, |frame, taxel| if frame == 0 { 0.0 } else { offset(taxel) + 2.0 * noise(frame, taxel) });
+    assert!(warnings(&begins).contains("1 of 100 frames read otherwise than all others, the first is frame 1"));
+    assert!(AtRest::of(&design, &begins).unwrap().touched);
     let warm = frames(100, |frame, taxel| offset(taxel) + 2.0 * noise(frame, taxel) + 0.2 * frame as f64);
     assert!(warnings(&warm).contains("drifts by 13"), "{}", warnings(&warm));
     // A converter that clips at 0, or with steps larger than the noise: constant taxels need not be dead.
