@@ -119,9 +119,11 @@ fn contacts_are_within_the_goals_too() {
     for name in some_of(["sensor1-fast", "sensor1-fast-64", "sensor1-fast-100", "sensor2-fast"]) {
         let design = design(name);
         let solver = Solver::new(&design).unwrap();
+        // Training at up to 1.5 times the noise halves errors under noise. 48 hidden units pay for it without any, as
+        // results/contact-sets.csv states.
+        let clean = if name == "sensor1-fast-100" { 4.0 } else { 3.1 };
         for shape in [HERTZ, DISC] {
-            // Training with noise costs a tenth of a percent without it.
-            within(&solver, &centred(&design.sensor, LAYER, shape), [6.0, 3.1, 6.0], [8.0; 3], [2.1; 2]);
+            within(&solver, &centred(&design.sensor, LAYER, shape), [6.0, clean, 6.0], [8.0; 3], [2.1; 2]);
         }
         for (seed, normal) in [(SEED, [3.0, 3.1]), (OTHER_SEED, [3.5; 2])] {
             within(&solver, &inside(&design.sensor, LAYER, seed, 200), [7.0, 5.0, 7.0], [8.0; 3], normal);
