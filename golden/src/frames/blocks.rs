@@ -93,8 +93,10 @@ pub(super) fn join<'a>(
     let wrong = |line: usize, problem: String| shape((line, problem));
     // Numbers of the columns above frames, as pandas writes them: without them the rows are whole frames.
     let numbers = Sensor { rows: 1, ..target.sensor.clone() };
-    let may_be_labelled = end.is_none() && (layout.labels == 1 || layout.labels == 0 && of_length(&all, columns) == 0);
-    let labelled = may_be_labelled.then(|| behind_labels(behind(1), &numbers, rows)).flatten();
+    // Of several labels one may be the number of the row; a label that no option names stands alone.
+    let is_implied = layout.first() == 0 && end.is_none() && of_length(&all, columns) == 0;
+    let before = if is_implied { 1 } else { layout.first() };
+    let labelled = (0..before).find_map(|at| behind_labels(behind(before), &numbers, rows, at));
     let is_labelled = labelled.is_some();
     all = labelled.unwrap_or(all);
     if of_length(&all, columns) < rows {
@@ -106,6 +108,11 @@ pub(super) fn join<'a>(
     let others = all.iter().filter(is_row).count();
     let is_numbered = head.is_some() && others > 0 && others.is_multiple_of(rows);
     all.iter_mut().filter(|line| is_numbered && Some(line.content) == head).for_each(|line| line.row = None);
+    if let Some(wrong) =
+        all.iter().filter(|line| line.row.is_none()).find_map(|line| other_order(line, columns, before))
+    {
+        return Err(shape(wrong));
+    }
     if end.is_some() {
         keep_width(&mut all, columns, layout.skip_bad).map_err(shape)?;
     }
@@ -116,7 +123,7 @@ pub(super) fn join<'a>(
     if !target.counts {
         one_unit(&all, unit.as_ref()).map_err(shape)?;
     }
-    all = parted(all, columns, rows, if is_labelled { 0 } else { layout.first() });
+    all = parted(all, columns, rows, layout.first());
     let (mut frames, mut run) = (Vec::new(), Vec::new());
     let last = all.iter().rposition(|line| !line.content.is_empty()).map_or(0, |last| last + 1);
     all.truncate(last);
@@ -170,7 +177,7 @@ pub(super) fn join<'a>(
         (false, true, _) => ", below numbers of the columns",
         (false, false, _) => "",
     };
-    let labels = if is_labelled { 1 } else { layout.first() };
+    let labels = before;
     Ok(Some(Blocks { frames, separator, labels, beside, unit }))
 }
 
@@ -190,9 +197,9 @@ fn transposed(all: &[Line], lines: usize, &Sensor { columns, rows, .. }: &Sensor
 
 /// The rows of a frame from the first of the grid on: by their numbers, where they have some, else as they come.
 fn places(all: &[Line], in_order: &[&[u8]], rows: usize) -> Result<Vec<usize>, (usize, String)> {
-    let number = |&row: &usize| str::from_utf8(in_order.get(row)?).ok()?.parse::<usize>().ok();
+    let numbers = if in_order.len() == rows { places_of(in_order) } else { None };
     let mut places: Vec<usize> = (0..rows).collect();
-    places.sort_by_key(number);
+    places.sort_by_key(|&row| numbers.as_ref().map(|numbers| numbers[row]));
     let mut labelled = all.iter().skip_while(|line| line.label.is_none()).peekable();
     let first = labelled.peek().map_or(1, |line| line.number);
     let is_run_on = labelled.take_while(|line| line.label.is_some()).count() > rows;
@@ -203,6 +210,39 @@ fn places(all: &[Line], in_order: &[&[u8]], rows: usize) -> Result<Vec<usize>, (
         return Err((first, problem.to_owned()));
     }
     Ok(places)
+}
+
+/// Places that names say, which follow each other without a gap in some order.
+fn places_of(names: &[&[u8]]) -> Option<Vec<usize>> {
+    let places = names.iter().map(|name| place(name, names[0])).collect::<Option<Vec<usize>>>()?;
+    let least = places.iter().min()?;
+    (*least..least + names.len()).all(|place| places.contains(&place)).then_some(places)
+}
+
+/// Names above rows, which stand behind so many labels, that stand in another order than the taxels: the line, and what to do.
+fn other_order(line: &Line, columns: usize, before: usize) -> Option<(usize, String)> {
+    let names = Separator::of(line.content).fields(line.content);
+    // A word may stand above the labels, or where rows have none.
+    let others = names.len().checked_sub(columns).filter(|&others| others <= before.max(1))?;
+    let names = &names[others..];
+    let is_other = columns > 2 && places_of(names).is_some_and(|places| !places.is_sorted());
+    let [first, last] = [names.first()?, names.last()?].map(|name| String::from_utf8_lossy(name));
+    is_other.then(|| {
+        (
+            line.number,
+            format!("the columns, {first} to {last}, are not in the order of the taxels: write the first one first"),
+        )
+    })
+}
+
+/// The number at the end of a label that begins as another one does, or the place of its letter in the alphabet.
+fn place(label: &[u8], other: &[u8]) -> Option<usize> {
+    let [(word, digits), (first, _)] = [label, other]
+        .map(|label| label.split_at(label.iter().rposition(|byte| !byte.is_ascii_digit()).map_or(0, |last| last + 1)));
+    match (word, digits) {
+        ([letter], []) if letter.is_ascii_alphabetic() => Some(usize::from(letter.to_ascii_lowercase())),
+        _ => str::from_utf8(digits).ok()?.parse().ok().filter(|_| word == first),
+    }
 }
 
 /// The fields of a line behind so many labels and up to a last column, if they are nothing but numbers and readings that are
@@ -223,13 +263,13 @@ fn is_damaged(line: &[u8]) -> bool {
         && 2 * fields.iter().filter(|field| separator::number(field).is_some()).count() > fields.len()
 }
 
-/// Lines whose rows stand behind labels, words that are the same for each frame, or numbers from 0 or 1 on in any order;
-/// nothing if they do not. A blank label, or a word beside numbers of the columns, is that of a header.
-fn behind_labels<'a>(mut lines: Vec<Line<'a>>, numbers: &Sensor, rows: usize) -> Option<Vec<Line<'a>>> {
+/// Lines whose rows have a label `at` this place, words that are the same for each frame, or numbers from 0 or 1 on in any
+/// order; nothing if they do not. A blank label, or a word beside numbers of the columns, is that of a header.
+fn behind_labels<'a>(mut lines: Vec<Line<'a>>, numbers: &Sensor, rows: usize, at: usize) -> Option<Vec<Line<'a>>> {
     let mut labels: Vec<&[u8]> = Vec::new();
     for line in &mut lines {
         let Some(row) = line.row.as_ref().filter(|row| row.len() == numbers.columns) else { continue };
-        let label = Separator::of(line.content).split(line.content)[0];
+        let label = *Separator::of(line.content).split(line.content).get(at)?;
         if label.is_empty() || no_number(label) && header::is_numbered(row, numbers, false) {
             line.row = None;
         } else {
@@ -292,7 +332,7 @@ fn keep_width(all: &mut [Line], columns: usize, skip_bad: bool) -> Result<(), (u
 /// Refuses a second unit of pressure. Without a unit above the frames they are pascals.
 fn one_unit(all: &[Line], unit: Option<&(usize, String)>) -> Result<(), (usize, String)> {
     let first = unit.map_or(Some(1.0), |(_, unit)| pascals(unit));
-    let mut named = all.iter().filter(|line| line.row.is_none()).filter_map(named);
+    let mut named = all.iter().filter(|line| line.row.is_none()).filter_map(numbered);
     let other = named.find(|(_, other)| pascals(other).is_some_and(|other| Some(other) != first));
     other.map_or(Ok(()), |(line, other)| {
         let before = unit.map_or_else(
@@ -306,13 +346,18 @@ fn one_unit(all: &[Line], unit: Option<&(usize, String)>) -> Result<(), (usize, 
 /// The unit that lines of words above the frames name: the first known one, or else the first.
 fn unit(lines: &[Line]) -> Option<(usize, String)> {
     let above = lines.iter().take_while(|line| line.row.as_ref().is_none_or(|row| row.len() < 2));
-    let units: Vec<(usize, String)> = above.filter_map(named).collect();
+    let units: Vec<(usize, String)> = above.filter_map(numbered).collect();
     units.iter().find(|(_, unit)| pascals(unit).is_some()).or(units.first()).cloned()
 }
 
-/// The unit that a line names, and the line: a known one, or else the word behind "unit".
-fn named(line: &Line) -> Option<(usize, String)> {
-    let text = String::from_utf8_lossy(line.content);
+/// The line, and the unit that it names.
+fn numbered(line: &Line) -> Option<(usize, String)> {
+    Some((line.number, named(line.content)?))
+}
+
+/// The unit that a line names: a known one, or else the word behind "unit".
+pub(super) fn named(line: &[u8]) -> Option<String> {
+    let text = String::from_utf8_lossy(line);
     let is_unit = |word: &&str| {
         let word = word.to_lowercase();
         word.starts_with("unit") || ["unit", "units"].iter().any(|end| word.ends_with(end)) || word.contains("einheit")
@@ -322,5 +367,5 @@ fn named(line: &Line) -> Option<(usize, String)> {
     words.find(is_unit)?;
     let behind: Vec<&str> = words.collect();
     let unit = behind.iter().find(|word| pascals(word).is_some()).or(behind.first())?;
-    Some((line.number, unit.replace(char::is_control, "")))
+    Some(unit.replace(char::is_control, ""))
 }

@@ -13,7 +13,7 @@ pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 pub(super) enum Line<'a> {
     /// Without a cell.
     Blank,
-    /// One that begins with #.
+    /// One that begins with #, or as MATLAB has it with %.
     Remark(&'a [u8]),
     /// The header again, as between recordings that were put behind each other.
     Again,
@@ -59,7 +59,7 @@ impl Cells {
         let line = if self.number == 1 { line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line) } else { line };
         let content = line.trim_ascii();
         let is_skipped = self.number <= self.skip;
-        if let Some(remark) = content.strip_prefix(b"#")
+        if let Some(remark) = content.strip_prefix(b"#").or(content.strip_prefix(b"%"))
             && !self.is_unreadable(remark)
         {
             if !self.has_rows && !is_skipped {

@@ -53,7 +53,7 @@ pub enum FrameError {
         hint: String,
     },
     /// A value that is no finite number.
-    #[error("{}, line {line}, column {column}: \"{text}\" is no finite float32 number; {remedy}", path.display())]
+    #[error("{}, line {line}, column {column}: {text:?} is no finite float32 number; {remedy}", path.display())]
     Value {
         /// The file.
         path: PathBuf,

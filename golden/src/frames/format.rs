@@ -28,6 +28,9 @@ const OTHERS: [(&[u8], &str, &str); 13] = [
 /// What a file is that holds no frames by its format, and what to do.
 pub(super) fn other(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     let begin = bytes.trim_ascii_start();
+    if begin.starts_with(b"[[") && !begin.iter().take(200).any(|&byte| byte == b',') {
+        return Some(("an array as Python prints it", "save it with numpy.save, or numpy.savetxt"));
+    }
     if begin.starts_with(b"{") || begin.starts_with(b"[{") || begin.starts_with(b"[[") {
         return Some(("JSON", "write the values of each frame on a line, separated by commas: jq -r '.values | @csv'"));
     }

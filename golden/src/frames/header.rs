@@ -13,6 +13,12 @@ const FEWEST_NUMBERED: usize = 4;
 /// So few numbers in any order may be a frame, if no word stands beside them.
 const FEWEST_ALONE: usize = 6;
 
+/// So many lines of numbers behind words are a header at most.
+const HEADS: usize = 4;
+
+/// A count is worth the pascals of a unit within this logarithm: gains differ a little.
+const OTHER_UNIT: f64 = 0.3;
+
 /// Correlation of a frame with the next one, at least: taxels differ by more than their noise.
 const ALIKE: f64 = 0.98;
 
@@ -155,6 +161,14 @@ impl Header {
                 let [left, right] = [a, b].map(|[from, to]| format!("--columns {from}-{to} ({})", shown([from, to])));
                 return Err(format!("a line holds several arrays: say which with {left} or {right}"));
             }
+            [] if kinds.len() >= first + 2 * taxels && alternate(&kinds[first..first + 2 * taxels]) => {
+                return Err(format!(
+                    "the columns of two arrays alternate, {}, {}, {}: write those of one array side by side",
+                    names[first],
+                    names[first + 1],
+                    names[first + 2]
+                ));
+            }
             [] if names.len() == first + taxels => self.are_taxels(&kinds, target, first)?,
             _ => {}
         }
@@ -197,6 +211,14 @@ impl Header {
     }
 }
 
+/// Whether numbered names of two kinds follow each other in turns.
+fn alternate(kinds: &[String]) -> bool {
+    kinds.len() > 2
+        && kinds[0] != kinds[1]
+        && kinds[0].contains('#')
+        && kinds.windows(3).all(|three| three[0] == three[2])
+}
+
 /// Whether a name is that of a label, not of a value.
 fn is_label(name: &str) -> bool {
     name.is_empty() || seconds(name).is_some()
@@ -230,6 +252,15 @@ pub(super) fn is_numbered(fields: &[&[u8]], sensor: &Sensor, alone: bool) -> boo
 /// behind a word. They are unlike the row below: a frame is much like the next one.
 pub(super) fn guessed(rows: &[Vec<f64>], labels: &[Label]) -> Option<Vec<bool>> {
     let first = rows.first()?;
+    // Lines of numbers behind words, as of places of the columns.
+    let words = labels.iter().take_while(|label| **label == Label::Word).count();
+    let is_named = (1..=HEADS).contains(&words)
+        && words < rows.len()
+        && labels[words..].iter().all(|label| *label == Label::Number)
+        && (0..words).all(|row| correlation(rows[row].iter().copied().zip(rows[words].iter().copied())) < ALIKE);
+    if words > 1 && is_named {
+        return Some((0..rows.len()).map(|row| row < words).collect());
+    }
     let again: Vec<bool> = (0..rows.len()).map(|row| rows[row] == *first && labels[row] == labels[0]).collect();
     let others = || (0..rows.len()).filter(|&row| !again[row]);
     let is_sorted = is_in_turn(first) && !others().any(|row| is_in_turn(&rows[row]));
@@ -392,6 +423,15 @@ pub(super) fn worth(unit: &str, target: &Target, sign: f64) -> Result<(Option<f6
         return Err(format!("{gives}, {what}, and the design reads pascals: set sensor.pa_per_count {remedy}"));
     }
     Ok(match pascals(unit).map(|pascals| sign * pascals) {
+        Some(pascals) if target.per_count.is_some_and(|own| (own / pascals.abs()).ln().abs() > OTHER_UNIT) => {
+            let own = target.per_count.unwrap_or_default();
+            (
+                None,
+                Some(format!(
+                    "{gives}, and sensor.pa_per_count says {own} Pa: are values in that unit? Then give its pascals there"
+                )),
+            )
+        }
         Some(_) if target.counts => (None, Some(format!("{gives}; the design says what a value is worth"))),
         None if target.counts => (None, None),
         None => (None, Some(format!("{gives}, which is no known pressure: values are taken for pascals"))),

@@ -38,10 +38,17 @@ pub(super) struct Target {
     pub(super) dead: Vec<usize>,
     /// Whether values are counts.
     pub(super) counts: bool,
+    /// Pascals of a count, without its sign, where one number says so.
+    pub(super) per_count: Option<f64>,
 }
 
 impl From<&Design> for Target {
     fn from(design: &Design) -> Self {
-        Self { sensor: design.sensor.clone(), dead: design.input.dead.clone(), counts: design.input.counts() }
+        Self {
+            sensor: design.sensor.clone(),
+            dead: design.input.dead.clone(),
+            counts: design.input.counts(),
+            per_count: design.input.pa_per_count.map(f64::abs),
+        }
     }
 }

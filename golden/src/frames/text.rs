@@ -48,6 +48,8 @@ pub(super) struct Lines {
     pub(super) cells: Cells,
     numbers: Numbers,
     header: Header,
+    /// The unit that a line above the rows names, and that line.
+    unit: Option<(usize, String)>,
     /// Columns of the sensor and of labels before them, where a frame is a block of lines.
     block: Option<[usize; 2]>,
     /// Cells of a line that has blank ones behind its last value.
@@ -67,6 +69,7 @@ impl Lines {
             cells: Cells::new(path, layout.skip_lines),
             numbers: Numbers::new(path),
             header: Header::default(),
+            unit: None,
             block: None,
             padded: None,
             too_long: None,
@@ -132,6 +135,7 @@ impl Lines {
             Line::Cells(content, separator) => (content, separator),
             Line::Remark(remark) => {
                 geometry::compare_remark(remark, &self.cells.path, self.cells.number, &self.target.sensor)?;
+                self.is_unit(remark);
                 return Ok(None);
             }
             Line::Again if !self.remarks.iter().any(|said| said.contains("the header again")) => {
@@ -153,6 +157,9 @@ impl Lines {
             (false, false) => (is_words() && self.is_units(values), is_numbered(false) && self.header.is_alike()),
         };
         let number = self.cells.number;
+        if is_words && fields.len() < self.target.sensor.taxels() && self.is_unit(content) {
+            return Ok(None);
+        }
         if is_words || is_numbered {
             if is_numbered {
                 self.numbered(values.iter().filter_map(|field| separator::number(field)).fold(0.0, f64::max));
@@ -173,6 +180,16 @@ impl Lines {
                     Err(_) => {}
                 }
             }
+        }
+        if let Some((line, unit)) = self.unit.take().filter(|_| self.header.unit.is_none()) {
+            let (path, wrong) = (self.cells.path.display().to_string(), self.cells.path.clone());
+            let (worth, remark) = header::worth(&unit, &self.target, 1.0).map_err(|problem| FrameError::Shape {
+                path: wrong,
+                line,
+                problem,
+            })?;
+            self.header.unit = worth;
+            self.remarks.extend(remark.map(|remark| format!("{path}, line {line}: {remark}")));
         }
         self.cells.begin(separator);
         match self.values(separator, content) {
@@ -200,6 +217,14 @@ impl Lines {
         }
         self.bad.get_or_insert_with(|| (Vec::new(), error.to_string())).0.push(line);
         Ok(None)
+    }
+
+    /// Whether a line above the rows names a known unit of pressure: that of all values without one of their own.
+    fn is_unit(&mut self, line: &[u8]) -> bool {
+        let unit = blocks::named(line).filter(|unit| !self.cells.has_rows && pascals(unit).is_some());
+        let is_unit = unit.is_some();
+        self.unit = unit.map(|unit| (self.cells.number, unit)).or(self.unit.take());
+        is_unit
     }
 
     /// The header of these names.

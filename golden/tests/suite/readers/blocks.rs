@@ -108,10 +108,36 @@ fn rows_stand_by_their_numbers() {
             assert!(found.remark.unwrap().contains("numbers of the rows, which say which is which"));
         }
     }
+    // In any column before the values, behind a word, and as letters.
+    for (labels, of) in [
+        (2, (|frame, row| format!("{frame},{row}")) as fn(u8, u8) -> String),
+        (2, |frame, row| format!("{row},0.{frame}")),
+        (1, |_, row| format!("R{row}")),
+        (0, |_, row| format!("R{row}")),
+        (1, |_, row| char::from(b'A' + row).to_string()),
+    ] {
+        let text: String =
+            (0..3).flat_map(|frame| [2, 1, 0].map(|row| format!("{},{row},{row}5\n", of(frame, row)))).collect();
+        assert_eq!(read(&text, labels).unwrap().frames, [expected; 3], "{text}");
+    }
+    let sides = read("R,1,2\nL,3,4\nM,5,6\n", 1).unwrap();
+    assert_eq!(sides.frames, [[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]], "no letters in turn");
     refused(
         read(&[rows([1, 2, 0]), rows([1, 2, 0])].concat(), 1),
         &["line 1", "began within a frame", "--skip-lines N"],
     );
+}
+
+/// Names of columns that stand the other way round would mirror the grid.
+#[test]
+fn columns_of_blocks_stand_in_their_order() {
+    let rows = "1,2,3\n4,5,6\n";
+    for names in ["C3,C2,C1\n", "frame 0,C3,C2,C1\n"] {
+        let with = ["line 1", "3", "1, are not in the order of the taxels"];
+        refused(read(&format!("{names}{rows}{names}{rows}"), 0), &with);
+    }
+    refused(read(",2,1,0\n0,1,2,3\n1,4,5,6\n", 0), &["line 1", "2 to 0, are not in the order"]);
+    assert_eq!(read(&format!("C1,C2,C3\n{rows}{rows}"), 0).unwrap().frames.len(), 2);
 }
 
 /// With columns behind the values, a decimal comma would shift them.

@@ -65,6 +65,11 @@ fn a_header_of_sensor_numbers_is_none_of_the_frames() {
         let found = both(read(&text, labels));
         assert!(found.remark.is_some_and(|remark| remark.contains("line 1") && remark.contains("header")), "{text:?}");
     }
+    // Places of the columns, and ranges.
+    let labelled = LINES.replace("-7.5", "0,-7.5").replace("-8", "1,-8");
+    for above in ["x (mm),0,4,8,0,4,8\ny (mm),0,0,0,4,4,4\n", "min,0,0,0,0,0,0\nmax,4095,4095,4095,4095,4095,4095\n"] {
+        both(read(&format!("{above}{labelled}"), 1));
+    }
     // Frames whose values happen to rise or to fall are frames, and so are those with words as labels.
     for rising in ["1,2,3,4,5,7\n1,2,3,4,6,9\n", "7,5,4,3,2,1\n9,6,4,3,2,1\n", "20,3,5,12,11,7\n20,3.5,5,12,11,7\n"] {
         assert_eq!(read(rising, 0).unwrap().frames.len(), 2, "{rising:?}");
@@ -239,6 +244,24 @@ fn units_above_the_frames() {
     let counts =
         read_bytes("f.csv", format!("p0 (kPa),p1,p2,p3,p4,p5\n{LINES}").as_bytes(), &pad("pa_per_count = -1.0"), 0);
     assert_eq!(both(counts).frames.len(), 2);
+    for (own, said) in
+        [("-1000.0", "says what a value is worth"), ("-1.0", "sensor.pa_per_count says 1 Pa: are values in")]
+    {
+        let names = [0, 1, 2, 3, 4, 5].map(|taxel| format!("p{taxel} (kPa)")).join(",");
+        let design = pad(&format!("pa_per_count = {own}"));
+        let found = both(read_bytes("f.csv", format!("{names}\n{LINES}").as_bytes(), &design, 0));
+        assert!(found.remark.unwrap().contains(said), "{own}");
+    }
+    let backwards = read(&format!("% p5,p4,p3,p2,p1,p0\n{LINES}"), 0).unwrap();
+    assert!(backwards.frames[0].iter().rev().eq(&A));
+    // In a line of its own above lines of frames, with names or not.
+    for above in
+        ["UNITS mbar\n", "# unit: mbar\n", "UNITS mbar\np0,p1,p2,p3,p4,p5\n", "# Unit mbar\np0,p1,p2,p3,p4,p5\n"]
+    {
+        let found = read(&format!("{above}{LINES}"), 0).unwrap();
+        assert!(found.frames[0] == A.map(|value| 100.0 * value), "{above}");
+        assert!(found.remark.unwrap().contains("line 1: the header gives the unit mbar"), "{above}");
+    }
     let found = read("UNITS mine\n1,2,3\n4,5,6\n", 0).unwrap();
     assert!(found.frames[0][0] == 1.0 && found.remark.unwrap().contains("unit mine, which is no known pressure"));
     // What is certainly no pressure is refused, unless the design says what it is worth.

@@ -278,6 +278,8 @@ fn columns_in_front_and_behind() {
     // Two arrays in a line.
     let two = "-7.5,-1,0,2,-3,5,1,1,1,1,1,1\n-8,-2,1,0.5,-4,6,1,1,1,1,1,1\n";
     refused(read(two, 0), &["two arrays in a line?", "--columns 1-6", "--columns 7-12"]);
+    let names = "l0,r0,l1,r1,l2,r2,l3,r3,l4,r4,l5,r5\n";
+    refused(read(&format!("{names}{two}"), 0), &["line 1", "two arrays alternate, l0, r0, l1", "side by side"]);
     let names = "l0,l1,l2,l3,l4,l5,r0,r1,r2,r3,r4,r5\n";
     refused(read(&format!("{names}{two}"), 0), &["several arrays", "--columns 1-6 (l0 to l5)", "--columns 7-12 (r0"]);
     both(read(&format!("{names}{two}"), taken([1, 6])));
@@ -321,6 +323,7 @@ fn other_formats_are_named() {
         (b"\xfd7zXZ\0\0", ["xz", "unxz"]),
         (b"\x28\xb5\x2f\xfd\x04", ["Zstandard", "unzstd"]),
         (b"{\"t\": 0, \"p\": [1, 2]}\n", ["JSON", "jq"]),
+        (b"[[0 1 2]\n [3 4 5]]\n", ["as Python prints it", "numpy.save"]),
         (b"P:1,2,3,4,5,6\n", ["line 1, column 1", "sed 's/[^,]*://g'"]),
         (b"12:00:01.123 -> 1,2,3,4,5,6\n", ["serial monitor", "timestamps off"]),
     ] {
