@@ -63,6 +63,9 @@ pub enum NewDesignError {
     /// A converter of too few or too many bits.
     #[error("counts of {0} bits; use {first} to {last}", first = COUNT_BITS.start(), last = COUNT_BITS.end())]
     Counts(u32),
+    /// The line search takes a pull that the sensor does not read for one that is not there.
+    #[error("a sensor that reads no tension needs the grid search: leave --estimator line away")]
+    Clipped,
     /// The estimator cannot be fitted to the sensor.
     #[error("{0}; or choose --estimator line, which needs no constants")]
     Calibrate(#[from] CalibrateError),
@@ -113,6 +116,9 @@ impl NewDesign {
     fn unfitted(&self) -> Result<Design, NewDesignError> {
         if let Some(bits) = self.counts.filter(|&bits| !COUNT_BITS.contains(&i64::from(bits))) {
             return Err(NewDesignError::Counts(bits));
+        }
+        if (self.estimator, self.tension) == (Estimator::Line, Tension::Clipped) {
+            return Err(NewDesignError::Clipped);
         }
         let Self { estimator, columns, rows, pitch_mm, depth_mm, tension, full_scale_pa, noise, .. } = self;
         // The fit's start.

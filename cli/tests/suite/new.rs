@@ -29,6 +29,9 @@ fn geometry_and_tension_have_to_be_given() {
     assert!(said.contains("Drag a finger") && said.contains("--paper-sensor 1"), "{said}");
     let said = refused(&["--columns", "6", "--rows", "6", "--pitch-mm", "4", "--tension", "read"]);
     assert!(said.contains("--depth-mm missing") && !said.contains("Drag a finger"), "{said}");
+    let clipped = ["--paper-sensor", "1", "--tension", "clipped", "--estimator", "line"];
+    let said = refused(&clipped);
+    assert!(said.contains("reads no tension needs the grid search: leave --estimator line away"), "{said}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is written");
     let small = ["--columns", "4", "--rows", "3", "--estimator", "line"];
     assert!(new(&[&small[..], &["--paper-sensor", "2"]].concat()).0.contains("4 x 3 taxels of 4 x 4 mm, 3 mm deep"));
