@@ -7,7 +7,7 @@ use std::path::Path;
 
 use super::layout::{Layout, Target};
 use super::text::{Lines, Text};
-use super::{FrameError, header};
+use super::{FrameError, header, names};
 use crate::numbers::counted;
 use crate::sensor::Sensor;
 use crate::separator::{self, Separator, is_unknown, no_number};
@@ -197,7 +197,7 @@ fn transposed(all: &[Line], lines: usize, &Sensor { columns, rows, .. }: &Sensor
 
 /// The rows of a frame from the first of the grid on: by their numbers, where they have some, else as they come.
 fn places(all: &[Line], in_order: &[&[u8]], rows: usize) -> Result<Vec<usize>, (usize, String)> {
-    let numbers = if in_order.len() == rows { places_of(in_order) } else { None };
+    let numbers = if in_order.len() == rows { names::places(in_order) } else { None };
     let mut places: Vec<usize> = (0..rows).collect();
     places.sort_by_key(|&row| numbers.as_ref().map(|numbers| numbers[row]));
     let mut labelled = all.iter().skip_while(|line| line.label.is_none()).peekable();
@@ -212,20 +212,13 @@ fn places(all: &[Line], in_order: &[&[u8]], rows: usize) -> Result<Vec<usize>, (
     Ok(places)
 }
 
-/// Places that names say, which follow each other without a gap in some order.
-fn places_of(names: &[&[u8]]) -> Option<Vec<usize>> {
-    let places = names.iter().map(|name| place(name, names[0])).collect::<Option<Vec<usize>>>()?;
-    let least = places.iter().min()?;
-    (*least..least + names.len()).all(|place| places.contains(&place)).then_some(places)
-}
-
 /// Names above rows, which stand behind so many labels, that stand in another order than the taxels: the line, and what to do.
 fn other_order(line: &Line, columns: usize, before: usize) -> Option<(usize, String)> {
     let names = Separator::of(line.content).fields(line.content);
     // A word may stand above the labels, or where rows have none.
     let others = names.len().checked_sub(columns).filter(|&others| others <= before.max(1))?;
     let names = &names[others..];
-    let is_other = columns > 2 && places_of(names).is_some_and(|places| !places.is_sorted());
+    let is_other = columns > 2 && names::places(names).is_some_and(|places| !places.is_sorted());
     let [first, last] = [names.first()?, names.last()?].map(|name| String::from_utf8_lossy(name));
     is_other.then(|| {
         (
@@ -233,16 +226,6 @@ fn other_order(line: &Line, columns: usize, before: usize) -> Option<(usize, Str
             format!("the columns, {first} to {last}, are not in the order of the taxels: write the first one first"),
         )
     })
-}
-
-/// The number at the end of a label that begins as another one does, or the place of its letter in the alphabet.
-fn place(label: &[u8], other: &[u8]) -> Option<usize> {
-    let [(word, digits), (first, _)] = [label, other]
-        .map(|label| label.split_at(label.iter().rposition(|byte| !byte.is_ascii_digit()).map_or(0, |last| last + 1)));
-    match (word, digits) {
-        ([letter], []) if letter.is_ascii_alphabetic() => Some(usize::from(letter.to_ascii_lowercase())),
-        _ => str::from_utf8(digits).ok()?.parse().ok().filter(|_| word == first),
-    }
 }
 
 /// The fields of a line behind so many labels and up to a last column, if they are nothing but numbers and readings that are

@@ -12,6 +12,7 @@ mod format;
 mod header;
 mod hints;
 mod layout;
+mod names;
 mod npy;
 mod stream;
 mod text;
