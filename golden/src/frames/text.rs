@@ -392,7 +392,12 @@ pub(super) fn read(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
         && let Some(is_head) = header::guessed(&text.rows, &labels)
     {
         lines.cells.number = text.lines[0];
-        lines.numbered(magnitude(&text.rows[0]));
+        if labels[0] == Label::Word {
+            let heads = counted(is_head.iter().take_while(|&&is_head| is_head).count(), "line");
+            lines.remark(&format!("a word where other lines have a number: {heads} taken for a header"));
+        } else {
+            lines.numbered(magnitude(&text.rows[0]));
+        }
         let kept = || is_head.iter().map(|is_head| !is_head);
         let [mut of_rows, mut of_lines, mut of_times, mut of_labels] = [kept(), kept(), kept(), kept()];
         text.rows.retain(|_| of_rows.next() == Some(true));
