@@ -127,6 +127,12 @@ impl Header {
                 shown([from, to])
             ))
         };
+        if let Some(at) = kinds.windows(2 * taxels).position(alternate).filter(|_| runs.is_empty()) {
+            return Err(format!(
+                "the columns of two arrays alternate, {}: write those of one array side by side",
+                names[at..at + 3].join(", ")
+            ));
+        }
         if let Some([from, to]) = layout.columns {
             return match runs[..] {
                 [run, ..] if !runs.contains(&[from, to]) => {
@@ -156,14 +162,6 @@ impl Header {
             [a, b, ..] if names.len() > first + taxels => {
                 let [left, right] = [a, b].map(|[from, to]| format!("--columns {from}-{to} ({})", shown([from, to])));
                 return Err(format!("a line holds several arrays: say which with {left} or {right}"));
-            }
-            [] if kinds.len() >= first + 2 * taxels && alternate(&kinds[first..first + 2 * taxels]) => {
-                return Err(format!(
-                    "the columns of two arrays alternate, {}, {}, {}: write those of one array side by side",
-                    names[first],
-                    names[first + 1],
-                    names[first + 2]
-                ));
             }
             [] if names.len() == first + taxels => self.are_taxels(&kinds, target, first)?,
             _ => {}

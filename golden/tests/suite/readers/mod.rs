@@ -279,7 +279,12 @@ fn columns_in_front_and_behind() {
     let two = "-7.5,-1,0,2,-3,5,1,1,1,1,1,1\n-8,-2,1,0.5,-4,6,1,1,1,1,1,1\n";
     refused(read(two, 0), &["two arrays in a line?", "--columns 1-6", "--columns 7-12"]);
     let names = "l0,r0,l1,r1,l2,r2,l3,r3,l4,r4,l5,r5\n";
-    refused(read(&format!("{names}{two}"), 0), &["line 1", "two arrays alternate, l0, r0, l1", "side by side"]);
+    for layout in [Layout::default(), taken([1, 6])] {
+        refused(
+            read(&format!("{names}{two}"), layout),
+            &["line 1", "two arrays alternate, l0, r0, l1", "side by side"],
+        );
+    }
     let names = "l0,l1,l2,l3,l4,l5,r0,r1,r2,r3,r4,r5\n";
     refused(read(&format!("{names}{two}"), 0), &["several arrays", "--columns 1-6 (l0 to l5)", "--columns 7-12 (r0"]);
     both(read(&format!("{names}{two}"), taken([1, 6])));
