@@ -392,11 +392,9 @@ pub(super) fn read(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
         && let Some(is_head) = header::guessed(&text.rows, &labels)
     {
         lines.cells.number = text.lines[0];
-        if labels[0] == Label::Word {
-            let heads = counted(is_head.iter().take_while(|&&is_head| is_head).count(), "line");
-            lines.remark(&format!("a word where other lines have a number: {heads} taken for a header"));
-        } else {
-            lines.numbered(magnitude(&text.rows[0]));
+        match is_head.iter().take_while(|&&is_head| is_head).count() {
+            1 => lines.numbered(magnitude(&text.rows[0])),
+            heads => lines.remark(&format!("a word where other lines have a number: {heads} lines taken for a header")),
         }
         let kept = || is_head.iter().map(|is_head| !is_head);
         let [mut of_rows, mut of_lines, mut of_times, mut of_labels] = [kept(), kept(), kept(), kept()];
