@@ -56,7 +56,7 @@ pub enum Kind {
     Order,
     /// Readings at the end of the converter's range, below the full scale.
     Stuck,
-    /// Each frame is divided by its own largest reading.
+    /// Each frame is divided by a norm of its own, such as its largest reading.
     Scaled,
     /// Noise above the stated one restarts the average.
     Noise,

@@ -7,7 +7,7 @@ use crate::sensor::Sensor;
 /// From so many frames on, what stays is told from what varies.
 const FRAMES: usize = 8;
 /// Neighbours vary on their own where nothing presses; under a contact this share of it is in common.
-const TOGETHER: f64 = 0.3;
+pub(super) const TOGETHER: f64 = 0.3;
 /// Offsets are up to this share of the full scale.
 const OFFSET: f64 = 0.05;
 /// An offset is one, and no noise, from so many deviations on.

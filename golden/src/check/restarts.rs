@@ -1,5 +1,6 @@
 //! Noise above the stated one, which restarts the average of `sensor.smoothing`.
 
+use super::quiet::TOGETHER;
 use super::{count, largest, together};
 use crate::design::Design;
 use crate::numbers::rounded;
@@ -9,8 +10,6 @@ use crate::smoothing::{Average, RESTART};
 const FRAMES: usize = 8;
 /// Restarts in this share of the frames cost much of what smoothing brings.
 const OFTEN: f64 = 0.1;
-/// Noise steps on each taxel on its own: neighbours have less than this in common.
-const TOGETHER: f64 = 0.3;
 
 /// A message where steps of single taxels restart the average of loaded frames, in pascals.
 pub(super) fn check(design: &Design, loaded: &[Vec<f64>]) -> Option<String> {

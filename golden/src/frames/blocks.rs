@@ -177,8 +177,7 @@ pub(super) fn join<'a>(
         (false, true, _) => ", below numbers of the columns",
         (false, false, _) => "",
     };
-    let labels = before;
-    Ok(Some(Blocks { frames, separator, labels, beside, unit }))
+    Ok(Some(Blocks { frames, separator, labels: before, beside, unit }))
 }
 
 /// What is wrong where so many lines have as many values as the grid has rows: it lies on its side.
@@ -212,7 +211,7 @@ fn places(all: &[Line], in_order: &[&[u8]], rows: usize) -> Result<Vec<usize>, (
     Ok(places)
 }
 
-/// Names above rows, which stand behind so many labels, that stand in another order than the taxels: the line, and what to do.
+/// A line of names of the columns that is in another order than the taxels, and what to do. Rows stand behind so many labels.
 fn other_order(line: &Line, columns: usize, before: usize) -> Option<(usize, String)> {
     let names = Separator::of(line.content).fields(line.content);
     // A word may stand above the labels, or where rows have none.
