@@ -78,6 +78,8 @@ fn a_header_of_sensor_numbers_is_none_of_the_frames() {
     assert_eq!(read("left,1,5,3,4,5,7\nright,1,2,3,4,6,9\n", 1).unwrap().frames.len(), 2);
     let mut lines = FrameLines::new(Path::new("port"), &pad(""), 0);
     assert!(lines.frame(b"3,5,7,11,12,20\n").unwrap().is_none() && lines.remark().is_some());
+    let said = FrameLines::new(Path::new("port"), &pad(""), 0).frame(b"0,\x01\n\x0e").unwrap_err().to_string();
+    assert!(!said.contains(char::is_control), "{said:?}");
     assert!(lines.frame(b"3,5,7,11,12,20\n").unwrap().is_some(), "a constant load");
     assert_eq!(read("3,5,7,11,12,20\n3,5,7,11,12,20\n3,5,7,9,8,20\n", 0).unwrap().frames.len(), 3);
     // Counts that all differ, behind a word, and such that rise in one frame alone, are much like those of the next frame.
