@@ -116,8 +116,8 @@ module sptfra_features_window #(
 
     // Along each axis, the side that grows and the mirrored one. Each has the orbit's column or row, whether the taxel
     // is in the far half of the grid, and whether it is one at all. In the middle of the window only the first counts
-    wire [9:0] column_2 [0:1];
-    wire [9:0] row_2 [0:1];
+    wire [ROW_WIDTH-1:0] column_2 [0:1];
+    wire [ROW_WIDTH-1:0] row_2 [0:1];
     wire [1:0] far_x_2;
     wire [1:0] far_y_2;
     wire [1:0] inside_x_2;
@@ -153,14 +153,29 @@ module sptfra_features_window #(
                 inside_y <= counts_y && !at_y[9] && (at_y[8:0] < GRID_ROWS);
             end
 
-            assign column_2[side] = column;
-            assign row_2[side] = row;
+            assign column_2[side] = column[ROW_WIDTH-1:0];
+            assign row_2[side] = row[ROW_WIDTH-1:0];
             assign far_x_2[side] = far_x;
             assign far_y_2[side] = far_y;
             assign inside_x_2[side] = inside_x;
             assign inside_y_2[side] = inside_y;
+
+            wire _unused = &{1'b0, column, row};
         end
     endgenerate
+
+    // The number of an orbit: a constant's bits say which shifts of the row are added
+    function [ROW_WIDTH-1:0] orbit_of(input [ROW_WIDTH-1:0] row, input [ROW_WIDTH-1:0] column);
+        integer place;
+        begin
+            orbit_of = column;
+            for (place = 0; place < ROW_WIDTH; place = place + 1) begin
+                if (ORBIT_COLUMNS[place]) begin
+                    orbit_of = orbit_of + (row << place);
+                end
+            end
+        end
+    endfunction
 
     // ---- Images: the share of the orbit's taxel in the right quarter of the grid, each from memories of its own
     wire [4*STRESS_BITS-1:0] images_5;
@@ -171,8 +186,6 @@ module sptfra_features_window #(
 
     generate
         for (image = 0; image < 4; image = image + 1) begin : gen_images
-            wire [47:0] row_base;
-            wire [31:0] orbit_2 = row_base[31:0] + {22'd0, column_2[image % 2]};
             reg [ROW_WIDTH-1:0] orbit_3;
             reg [1:0] quarter_3;
             reg [1:0] quarter_4;
@@ -180,14 +193,6 @@ module sptfra_features_window #(
             reg inside_4;
             wire [STRESS_BITS-1:0] seen_4 [0:3];
             reg [STRESS_BITS-1:0] value_5;
-
-            sptfra_times_index #(
-                .INDEX_WIDTH (6)
-            ) times_row (
-                .number  (ORBIT_COLUMNS[26:0]),
-                .index   (row_2[image / 2][5:0]),
-                .product (row_base)
-            );
 
             for (quarter = 0; quarter < 4; quarter = quarter + 1) begin : gen_quarters
                 sptfra_ram #(
@@ -206,7 +211,7 @@ module sptfra_features_window #(
             end
 
             always @(posedge clock) begin
-                orbit_3 <= orbit_2[ROW_WIDTH-1:0];
+                orbit_3 <= orbit_of(row_2[image / 2], column_2[image % 2]);
                 quarter_3 <= {far_y_2[image / 2], far_x_2[image % 2]};
                 quarter_4 <= quarter_3;
                 inside_3 <= inside_x_2[image % 2] && inside_y_2[image / 2];
@@ -215,8 +220,6 @@ module sptfra_features_window #(
             end
 
             assign images_5[STRESS_BITS*image +: STRESS_BITS] = value_5;
-
-            wire _unused = &{1'b0, row_base, orbit_2, row_2[image / 2]};
         end
     endgenerate
 
