@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Multiplier of one DSP block of 27 by 18 bits, or of two: coefficient * data = low + high.
+// Multiplier of one DSP block of 27 by 18 bits, or of two: coefficient * data.
 //
-// Latency 1 enabled cycle, one product a cycle. All are two's complement integers. Of one block, high is zero; of two,
-// low is the product with the data's lower 17 bits, high that with its upper 18. The adder behind joins them.
+// Latency 1 enabled cycle, one product a cycle. All are two's complement integers. Of two blocks, one has the data's
+// lower 17 bits, the other its upper 18; their products are joined behind their registers.
 
 `default_nettype none
 
@@ -18,8 +18,7 @@ module sptfra_multiply #(
     input  wire enable, // the product follows the operands; else it holds
     input  wire signed [17:0] coefficient,
     input  wire signed [DATA_BITS-1:0] data,
-    output wire signed [DATA_BITS+17:0] low, // one part of the product
-    output wire signed [DATA_BITS+17:0] high // the other
+    output wire signed [DATA_BITS+17:0] product
 );
 
     generate
@@ -36,19 +35,17 @@ module sptfra_multiply #(
                 end
             end
 
-            assign low = {{(DATA_BITS-18){product_low[35]}}, product_low};
-            assign high = {product_high, 17'd0};
+            assign product = {{(DATA_BITS-18){product_low[35]}}, product_low} + {product_high, 17'd0};
         end else begin : gen_one_block
-            reg signed [44:0] product;
+            reg signed [44:0] product_1;
 
             always @(posedge clock) begin
                 if (enable) begin
-                    product <= coefficient * data;
+                    product_1 <= coefficient * data;
                 end
             end
 
-            assign low = product;
-            assign high = 45'sd0;
+            assign product = product_1;
         end
     endgenerate
 

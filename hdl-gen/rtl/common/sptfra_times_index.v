@@ -11,16 +11,18 @@ module sptfra_times_index #(
 ) (
     input  wire [26:0] number,
     input  wire [INDEX_WIDTH-1:0] index,
-    output reg  [47:0] product
+    output reg  [26+INDEX_WIDTH:0] product
 );
 
-    wire [47:0] wide = {21'd0, number};
+    localparam integer WIDTH = 27 + INDEX_WIDTH;
+
+    wire [WIDTH-1:0] wide = {{INDEX_WIDTH{1'b0}}, number};
     integer place;
 
     always @(*) begin
-        product = 48'd0;
+        product = {WIDTH{1'b0}};
         for (place = 0; place < INDEX_WIDTH; place = place + 1) begin
-            product = product + ((wide << place) & {48{index[place]}});
+            product = product + ((wide << place) & {WIDTH{index[place]}});
         end
     end
 

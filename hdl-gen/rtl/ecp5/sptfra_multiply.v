@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Multiplier made of two of 18 by 18 bits, for Lattice ECP5: coefficient * data = low + high.
+// Multiplier made of two of 18 by 18 bits, for Lattice ECP5: coefficient * data.
 //
-// Latency 1 enabled cycle, one product a cycle. All are two's complement integers. low is the product with the data's
-// lower 17 bits, high that with those above. The adder behind joins them with its own addend.
+// Latency 1 enabled cycle, one product a cycle. All are two's complement integers. One has the data's lower 17 bits,
+// the other those above; their products are joined behind their registers.
 
 `default_nettype none
 
@@ -18,8 +18,7 @@ module sptfra_multiply #(
     input  wire enable, // the product follows the operands; else it holds
     input  wire signed [17:0] coefficient,
     input  wire signed [DATA_BITS-1:0] data,
-    output wire signed [DATA_BITS+17:0] low, // one part of the product
-    output wire signed [DATA_BITS+17:0] high // the other
+    output wire signed [DATA_BITS+17:0] product
 );
 
     wire signed [17:0] data_low = {1'b0, data[16:0]};
@@ -34,8 +33,7 @@ module sptfra_multiply #(
         end
     end
 
-    assign low = {{(DATA_BITS-18){product_low[35]}}, product_low};
-    assign high = {product_high, 17'd0};
+    assign product = {{(DATA_BITS-18){product_low[35]}}, product_low} + {product_high, 17'd0};
 
 endmodule
 

@@ -54,10 +54,10 @@ module sptfra_direction #(
     wire above_floor = (magnitude > noise);
     wire [2*X_HALF-1:0] column_wide = {{(2*X_HALF-X_WIDTH){1'b0}}, column};
     wire [2*Y_HALF-1:0] row_wide = {{(2*Y_HALF-Y_WIDTH){1'b0}}, row};
-    wire [47:0] lower_x;
-    wire [47:0] upper_x;
-    wire [47:0] lower_y;
-    wire [47:0] upper_y;
+    wire [26+X_HALF:0] lower_x;
+    wire [26+X_HALF:0] upper_x;
+    wire [26+Y_HALF:0] lower_y;
+    wire [26+Y_HALF:0] upper_y;
 
     assign no_push = !(compression_seen && tension_seen);
 
@@ -112,10 +112,10 @@ module sptfra_direction #(
     reg valid_1;
     reg tensile_1;
     reg [47:0] magnitude_1;
-    reg [47:0] lower_x_1;
-    reg [47:0] upper_x_1;
-    reg [47:0] lower_y_1;
-    reg [47:0] upper_y_1;
+    reg [26+X_HALF:0] lower_x_1;
+    reg [26+X_HALF:0] upper_x_1;
+    reg [26+Y_HALF:0] lower_y_1;
+    reg [26+Y_HALF:0] upper_y_1;
     reg valid_2;
     reg tensile_2;
     reg [47:0] magnitude_2;
@@ -133,14 +133,14 @@ module sptfra_direction #(
         tensile_1 <= tensile;
         magnitude_1 <= {21'd0, magnitude};
         lower_x_1 <= lower_x;
-        upper_x_1 <= upper_x << X_HALF;
+        upper_x_1 <= upper_x;
         lower_y_1 <= lower_y;
-        upper_y_1 <= upper_y << Y_HALF;
+        upper_y_1 <= upper_y;
         valid_2 <= valid_1 && !reset;
         tensile_2 <= tensile_1;
         magnitude_2 <= magnitude_1;
-        moment_x_2 <= lower_x_1 + upper_x_1;
-        moment_y_2 <= lower_y_1 + upper_y_1;
+        moment_x_2 <= {{(21-X_HALF){1'b0}}, lower_x_1} + ({{(21-X_HALF){1'b0}}, upper_x_1} << X_HALF);
+        moment_y_2 <= {{(21-Y_HALF){1'b0}}, lower_y_1} + ({{(21-Y_HALF){1'b0}}, upper_y_1} << Y_HALF);
         if (valid_2 && tensile_2) begin
             tension <= tension + magnitude_2;
             tension_x <= tension_x + moment_x_2;

@@ -153,8 +153,8 @@ module sptfra_features_stress #(
     wire other_half = seconds[8];
     wire [26:0] along_x = other_half ? at_right : at_left;
     wire [26:0] along_y = other_half ? at_bottom : at_top;
-    wire [47:0] moment_x_8;
-    wire [47:0] moment_y_8;
+    wire [26+INDEX_WIDTH:0] moment_x_8;
+    wire [26+INDEX_WIDTH:0] moment_y_8;
     reg [26:0] weight_9;
     reg [26+INDEX_WIDTH:0] moment_x_9;
     reg [26+INDEX_WIDTH:0] moment_y_9;
@@ -182,16 +182,14 @@ module sptfra_features_stress #(
         .product (moment_y_8)
     );
 
-    wire _unused_moments = &{1'b0, moment_x_8, moment_y_8};
-
     always @(posedge clock) begin
         at_left <= compressions[27*0 +: 27] + compressions[27*2 +: 27];
         at_right <= compressions[27*1 +: 27] + compressions[27*3 +: 27];
         at_top <= compressions[27*0 +: 27] + compressions[27*1 +: 27];
         at_bottom <= compressions[27*2 +: 27] + compressions[27*3 +: 27];
         weight_9 <= along_x;
-        moment_x_9 <= moment_x_8[26+INDEX_WIDTH:0];
-        moment_y_9 <= moment_y_8[26+INDEX_WIDTH:0];
+        moment_x_9 <= moment_x_8;
+        moment_y_9 <= moment_y_8;
         if (other_half) begin
             column <= last_column ? {INDEX_WIDTH{1'b0}} : column + 1'b1;
             row <= last_column ? row + 1'b1 : row;
@@ -218,9 +216,7 @@ module sptfra_features_stress #(
 
     generate
         for (index = 0; index < 2; index = index + 1) begin : gen_shares
-            wire signed [44:0] product_low; // the product is their sum
-            wire signed [44:0] product_high;
-            wire signed [44:0] product = product_low + product_high;
+            wire signed [44:0] product;
             wire signed [SHARE_BITS-1:0] wide = { {(STRESS_LEFT + 1){product[44]}}, product[43:0]};
             reg signed [SHARE_BITS-1:0] scaled;
             reg signed [SHARE_BITS-1:0] octets;
@@ -238,8 +234,7 @@ module sptfra_features_stress #(
                 .enable      (1'b1),
                 .coefficient (reciprocal),
                 .data        (seconds[5] ? normals[27*index +: 27] : normals[27*(2 + index) +: 27]),
-                .low         (product_low),
-                .high        (product_high)
+                .product     (product)
             );
 
             always @(posedge clock) begin

@@ -205,9 +205,7 @@ module sptfra_grid_level #(
         for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_weights
             reg signed [VALUE_BITS+1:0] depth_2;
             reg [MARGIN_BITS-1:0] depth_3;
-            wire signed [44:0] square_low_4; // the square is their sum
-            wire signed [44:0] square_high_4;
-            wire signed [44:0] square_4 = square_low_4 + square_high_4;
+            wire signed [44:0] square_4;
             reg [WEIGHT_BITS-1:0] weight_5;
 
             assign below_2[index] = !depth_2[VALUE_BITS+1] && (depth_2 != {(VALUE_BITS + 2){1'b0}});
@@ -217,8 +215,7 @@ module sptfra_grid_level #(
                 .enable      (1'b1),
                 .coefficient ({ {(18 - MARGIN_BITS){1'b0}}, depth_3}),
                 .data        ({ {(27 - MARGIN_BITS){1'b0}}, depth_3}),
-                .low         (square_low_4),
-                .high        (square_high_4)
+                .product     (square_4)
             );
 
             always @(posedge clock) begin

@@ -92,8 +92,7 @@ module sptfra_search_cell #(
     end
 
     // ---- Stages 2 and 3: addend * 2^16 + factor * multiplicand; in the passes 2^15, plus half a step
-    wire signed [44:0] product_low_2; // the product is their sum
-    wire signed [44:0] product_high_2;
+    wire signed [44:0] product_2;
     reg signed [44:0] addend_2;
     reg signed [44:0] rectifier_3;
     reg signed [26:0] multiplicand_2;
@@ -107,8 +106,7 @@ module sptfra_search_cell #(
         .enable      (1'b1),
         .coefficient (factor_1),
         .data        (multiplicand_1),
-        .low         (product_low_2),
-        .high        (product_high_2)
+        .product     (product_2)
     );
 
     always @(posedge clock) begin
@@ -116,7 +114,7 @@ module sptfra_search_cell #(
             ? { {(18 - LINE_FRACTION){addend_1[26]}}, addend_1, 1'b1, {(LINE_FRACTION - 1){1'b0}}}
             : { {(18 - FRICTION_FRACTION){addend_less[26]}}, addend_less, {FRICTION_FRACTION{slopes[1]}}};
         multiplicand_2 <= multiplicand_1;
-        rectifier_3 <= addend_2 + product_low_2 + product_high_2;
+        rectifier_3 <= addend_2 + product_2;
         multiplicand_3 <= multiplicand_2;
     end
 

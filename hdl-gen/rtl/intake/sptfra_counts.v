@@ -37,17 +37,15 @@ module sptfra_counts #(
 
     // ---- Product
     reg signed [26:0] number_1;
-    wire signed [44:0] product_low_2; // the product is their sum
-    wire signed [44:0] product_high_2;
-    wire signed [47:0] product_2 = {{3{product_low_2[44]}}, product_low_2} + {{3{product_high_2[44]}}, product_high_2};
+    wire signed [44:0] exact_2;
+    wire signed [47:0] product_2 = {{3{exact_2[44]}}, exact_2};
 
     sptfra_multiply multiplier (
         .clock       (clock),
         .enable      (1'b1),
         .coefficient (gain_1),
         .data        (number_1),
-        .low         (product_low_2),
-        .high        (product_high_2)
+        .product     (exact_2)
     );
 
     // ---- Rounded, with the offset: a cycle before the sum

@@ -101,13 +101,11 @@ module sptfra_creep #(
     wire signed [CREEP_BITS-1:0] creep_1 = holds_1 ? kept_1 : HALF;
     wire signed [27:0] stress_1 = $signed({reading_1[26], reading_1})
         - $signed({creep_1[CREEP_BITS-1], creep_1[CREEP_BITS-1:FRACTION]});
-    wire signed [44:0] end_low_3, end_high_3; // the product is their sum
-    wire signed [44:0] end_3 = end_low_3 + end_high_3;
+    wire signed [44:0] end_3;
     reg signed [26:0] end_4;
     wire signed [27:0] remaining_4;
     reg signed [26:0] half_remaining_5;
-    wire signed [44:0] step_low_6, step_high_6; // the product is their sum
-    wire signed [44:0] step_6 = step_low_6 + step_high_6;
+    wire signed [44:0] step_6;
     reg signed [CREEP_BITS-1:0] creep_2, creep_3, creep_4, creep_5, creep_6, creep_7;
     wire signed [44:0] creep_on_6 = $signed({creep_6[CREEP_BITS-1], creep_6})
         + (step_6 >>> (SHARE[22:17] - FRACTION - 1));
@@ -120,8 +118,7 @@ module sptfra_creep #(
         .enable      (1'b1),
         .coefficient ({1'b0, STRENGTH[16:0]}),
         .data        (out_stress),
-        .low         (end_low_3),
-        .high        (end_high_3)
+        .product     (end_3)
     );
 
     sptfra_multiply share_multiplier (
@@ -129,8 +126,7 @@ module sptfra_creep #(
         .enable      (1'b1),
         .coefficient ({1'b0, SHARE[16:0]}),
         .data        (half_remaining_5),
-        .low         (step_low_6),
-        .high        (step_high_6)
+        .product     (step_6)
     );
 
     sptfra_ram #(

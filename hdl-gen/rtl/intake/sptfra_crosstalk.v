@@ -124,8 +124,7 @@ module sptfra_crosstalk #(
     reg [4*Y_WIDTH-1:0] rows_to;
     reg signed [26:0] sum_1;
     reg [17:0] factor_1;
-    wire signed [44:0] product_low_2; // the product is their sum
-    wire signed [44:0] product_high_2;
+    wire signed [44:0] product_2;
     reg signed [44:0] product_3; // twice what it is, to be rounded
     reg signed [SUM_BITS-1:0] term_4;
     reg signed [SUM_BITS-1:0] total_term;
@@ -137,8 +136,7 @@ module sptfra_crosstalk #(
         .enable      (1'b1),
         .coefficient (factor_1),
         .data        (sum_1),
-        .low         (product_low_2),
-        .high        (product_high_2)
+        .product     (product_2)
     );
 
     always @(posedge clock) begin
@@ -149,7 +147,7 @@ module sptfra_crosstalk #(
         rows_to <= {rows_to[3*Y_WIDTH-1:0], of_row[Y_WIDTH-1:0]};
         sum_1 <= is_total ? total[TOTAL_BITS-1 -: 27] : of_sum[SUM_BITS-1 -: 27];
         factor_1 <= is_total ? TOTAL_FACTOR : is_row ? ROW_FACTOR : COLUMN_FACTOR;
-        product_3 <= (product_low_2 + product_high_2) >>> (FRACTION - 1);
+        product_3 <= product_2 >>> (FRACTION - 1);
         term_4 <= half_3[SUM_BITS:1];
         if (totals[4]) begin
             total_term <= term_4;

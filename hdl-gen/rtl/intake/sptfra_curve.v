@@ -86,8 +86,7 @@ module sptfra_curve #(
     reg [5:0] shift_2;
     reg [5:0] shift_3;
     reg [5:0] shift_4;
-    wire signed [44:0] product_low_3; // the product is their sum
-    wire signed [44:0] product_high_3;
+    wire signed [44:0] product_3;
     reg signed [44:0] product_4;
     reg signed [44:0] rise_5; // twice what it is, to be rounded
     wire signed [44:0] rise_half = rise_5 + 45'sd1;
@@ -97,8 +96,7 @@ module sptfra_curve #(
         .enable      (1'b1),
         .coefficient (slope_2),
         .data        (along_2),
-        .low         (product_low_3),
-        .high        (product_high_3)
+        .product     (product_3)
     );
 
     always @(posedge clock) begin
@@ -109,7 +107,7 @@ module sptfra_curve #(
         value_2 <= value_1;
         shift_3 <= shift_2;
         value_3 <= value_2;
-        product_4 <= product_low_3 + product_high_3;
+        product_4 <= product_3;
         shift_4 <= shift_3;
         value_4 <= value_3;
         rise_5 <= product_4 >>> shift_4;

@@ -141,7 +141,7 @@ module sptfra_smoothing #(
     wire [2*27-1:0] magnitude_halves, step_halves; // not needed
     reg [26:0] most;
     reg [26:0] most_step;
-    wire signed [44:0] product_low, product_high; // the product is their sum
+    wire signed [44:0] product;
     reg [44:0] limit;
     wire restarts = !holds || ({18'd0, most_step} > limit);
 
@@ -172,8 +172,7 @@ module sptfra_smoothing #(
         .enable      (1'b1),
         .coefficient ({1'b0, FACTOR}),
         .data        (most),
-        .low         (product_low),
-        .high        (product_high)
+        .product     (product)
     );
 
     // ---- Variance of the noise left: twice it loses a share
@@ -229,7 +228,7 @@ module sptfra_smoothing #(
         if (step > most_step) begin
             most_step <= step;
         end
-        limit <= $unsigned(product_low + product_high) >> FRACTION;
+        limit <= $unsigned(product) >> FRACTION;
 
         if (ends[4]) begin
             busy <= 1'b0;

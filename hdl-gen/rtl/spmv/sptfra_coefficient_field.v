@@ -119,10 +119,8 @@ module sptfra_coefficient_field #(
 
             // ---- Stage 5: products; stage 6: the sum, with 16 fraction bits more
             reg [26:0] g0_5;
-            wire signed [44:0] x_low_5; // each product is their sum
-            wire signed [44:0] x_high_5;
-            wire signed [44:0] y_low_5;
-            wire signed [44:0] y_high_5;
+            wire signed [44:0] x_5;
+            wire signed [44:0] y_5;
             reg signed [63:0] force_6;
             wire signed [63:0] g0_wide = {{21{g0_5[26]}}, g0_5, 16'd0};
 
@@ -133,8 +131,7 @@ module sptfra_coefficient_field #(
                 .enable      (enable),
                 .coefficient (mu_x),
                 .data        (wide_4[27*1 +: 27]),
-                .low         (x_low_5),
-                .high        (x_high_5)
+                .product     (x_5)
             );
 
             sptfra_multiply multiplier_y (
@@ -142,15 +139,13 @@ module sptfra_coefficient_field #(
                 .enable      (enable),
                 .coefficient (mu_y),
                 .data        (wide_4[27*2 +: 27]),
-                .low         (y_low_5),
-                .high        (y_high_5)
+                .product     (y_5)
             );
 
             always @(posedge clock) begin
                 if (enable) begin
                     g0_5 <= wide_4[27*0 +: 27];
-                    force_6 <= g0_wide + {{19{x_low_5[44]}}, x_low_5} + {{19{x_high_5[44]}}, x_high_5}
-                        + {{19{y_low_5[44]}}, y_low_5} + {{19{y_high_5[44]}}, y_high_5};
+                    force_6 <= g0_wide + {{19{x_5[44]}}, x_5} + {{19{y_5[44]}}, y_5};
                 end
             end
         end

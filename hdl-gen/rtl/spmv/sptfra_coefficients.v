@@ -196,8 +196,7 @@ module sptfra_coefficients #(
 
     generate
         for (index = 0; index < 2; index = index + 1) begin : gen_moments
-            wire signed [44:0] low_4;
-            wire signed [44:0] high_4;
+            wire signed [44:0] product_4;
             reg signed [44:0] rounded_5;
 
             sptfra_multiply times_arm (
@@ -205,12 +204,11 @@ module sptfra_coefficients #(
                 .enable      (1'b1),
                 .coefficient (arms[18*index +: 18]),
                 .data        (g_wide[26:0]),
-                .low         (low_4),
-                .high        (high_4)
+                .product     (product_4)
             );
 
             always @(posedge clock) begin
-                rounded_5 <= low_4 + high_4 + ARM_HALF;
+                rounded_5 <= product_4 + ARM_HALF;
             end
 
             assign moment_5[index] = {{(ARM_FRACTION - 5){rounded_5[44]}}, rounded_5[44:ARM_FRACTION]};

@@ -238,11 +238,9 @@ module sptfra_field #(
             reg signed [DATA_BITS-1:0] force_b;
             reg signed [63:0] force_c;
             wire signed [FACTOR_BITS-1:0] weight_wide;
-            wire signed [PRODUCT_BITS-1:0] product_low_b; // the product is their sum
-            wire signed [PRODUCT_BITS-1:0] product_high_b;
+            wire signed [PRODUCT_BITS-1:0] product_b;
             wire signed [63:0] force_wide = {{(64-DATA_BITS){force_b[DATA_BITS-1]}}, force_b};
-            wire signed [63:0] product_low = {{(64-PRODUCT_BITS){product_low_b[PRODUCT_BITS-1]}}, product_low_b};
-            wire signed [63:0] product_high = {{(64-PRODUCT_BITS){product_high_b[PRODUCT_BITS-1]}}, product_high_b};
+            wire signed [63:0] product = {{(64-PRODUCT_BITS){product_b[PRODUCT_BITS-1]}}, product_b};
 
             assign force_value[64*word +: 64] = force_c;
 
@@ -290,8 +288,7 @@ module sptfra_field #(
                 .enable      (enable),
                 .coefficient (share_a),
                 .data        (weight_wide),
-                .low         (product_low_b),
-                .high        (product_high_b)
+                .product     (product_b)
             );
 
             always @(posedge clock) begin
@@ -302,8 +299,7 @@ module sptfra_field #(
                         default: share_a <= -ONE;
                     endcase
                     force_b <= force_a;
-                    force_c <= (force_wide <<< FORCE_SHIFT) + (product_low <<< SHARE_SHIFT)
-                        + (product_high <<< SHARE_SHIFT);
+                    force_c <= (force_wide <<< FORCE_SHIFT) + (product <<< SHARE_SHIFT);
                 end
             end
         end

@@ -74,51 +74,36 @@ fn lane(module: &'static str, inputs: &'static [Port], next: impl Fn(i64, bool, 
     run
 }
 
-/// Both forms of the multiplier: the sum of its outputs is compared by [`check_products`].
+/// Both forms of the multiplier.
 pub fn multiply(module: &'static str) -> Run {
-    factors(Run::new(module, &[("enable", 1), ("coefficient", 18), ("data", 27)], &[("low", 45), ("high", 45)]))
+    factors(Run::new(module, &[("enable", 1), ("coefficient", 18), ("data", 27)], &[("product", 45)]))
 }
 
 /// Two multipliers.
 pub fn multiply_wide(module: &'static str) -> Run {
-    factors(Run::new(module, &[("enable", 1), ("coefficient", 18), ("data", 35)], &[("low", 53), ("high", 53)]))
+    factors(Run::new(module, &[("enable", 1), ("coefficient", 18), ("data", 35)], &[("product", 53)]))
 }
 
 fn factors(mut run: Run) -> Run {
     let mut rng = ChaCha8Rng::seed_from_u64(4);
     let widths = [run.inputs[1].1, run.inputs[2].1];
+    let mut expected: Option<i64> = None;
     for _ in 0..20_000 {
         let [coefficient, data] = widths.map(|bits| {
             let least = -1_i64 << (bits - 1);
             let corners = [0, 1, -1, least, -least - 1, -1 << 17, (1 << 17) - 1];
             let corner = rng.random_bool(0.3).then(|| corners[rng.random_range(0..corners.len())]);
-            corner.unwrap_or_else(|| rng.random::<i64>() >> (64 - bits)) as u64
+            corner.unwrap_or_else(|| rng.random::<i64>() >> (64 - bits))
         });
-        run.push(&[bits(rng.random_bool(0.8)), coefficient, data], &[None, None]);
+        let enable = rng.random_bool(0.8);
+        run.push(&[bits(enable), coefficient as u64, data as u64], &[expected.map(|product| product as u64)]);
+        run.results += usize::from(expected.is_some());
+        if enable {
+            let in_one = i32::try_from(data).map(|data| product(coefficient as i32, data));
+            expected = Some(in_one.unwrap_or(coefficient * data));
+        }
     }
     run
-}
-
-/// Both parts of every product together are the reference's, and hold while the multiplier does.
-pub fn check_products(played: &Played) {
-    let [enable, coefficient, data] = ["enable", "coefficient", "data"].map(|name| played.input(name));
-    let [low, high] = ["low", "high"].map(|name| played.output(name));
-    let signed = |value: u64, bits: u32| (value << (64 - bits)).cast_signed() >> (64 - bits);
-    let (inputs, bits) = (played.run.inputs, played.run.outputs[0].1);
-    let mut expected = None;
-    let mut compared = 0;
-    for i in 0..low.len() {
-        if let Some(expected) = expected {
-            assert_eq!(signed(low[i].wrapping_add(high[i]), bits), expected, "cycle {i}");
-            compared += 1;
-        }
-        if enable[i] == 1 {
-            let [left, right] = [signed(coefficient[i], inputs[1].1), signed(data[i], inputs[2].1)];
-            let in_one = i32::try_from(right).map(|right| product(left as i32, right));
-            expected = Some(in_one.unwrap_or(left * right));
-        }
-    }
-    assert!(compared > 15_000, "{compared}");
 }
 
 pub fn axis_skid() -> Run {
