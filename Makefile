@@ -159,7 +159,7 @@ test-tools: ## What `tools` installs, and what only tests need: a browser, the s
 .PHONY: synth
 synth: tools build ## Yosys' count of multipliers, memories, LUT and FF beside the predicted ones (minutes)
 	@$(CARGO) build --quiet -p xtask
-	@tools/synth.sh $(DESIGN)
+	@tools/synth.py $(DESIGN)
 
 # Times are measured with a release build. tools/results.py writes its files in results/.
 BENCH_FOLDER  := $(TARGET)/bench
@@ -173,7 +173,7 @@ BENCH_CELLS   := sensor1-reduced sensor1-resultants sensor1-fast sensor1-fast-64
 bench: tools ## Measure solver, generator, simulation, cycles and cells, into results/ (Yosys: half an hour)
 	@echo 'bench: a release build'
 	@$(CARGO) build --quiet --release -p sptfra -p xtask --bins
-	@PROFILE=release tools/synth.sh $(BENCH_CELLS:%=designs/%.toml)
+	@PROFILE=release tools/synth.py $(BENCH_CELLS:%=designs/%.toml)
 	@mkdir -p $(BENCH_FOLDER)
 	@echo 'bench: the f64 solver (a minute)'
 	@$(XTASK_RELEASE) solver --json $(BENCH_SOLVER) > $(BENCH_FOLDER)/solver.json
@@ -188,7 +188,7 @@ bench: tools ## Measure solver, generator, simulation, cycles and cells, into re
 .PHONY: luts
 luts: tools build ## Fit the estimates of LUT and FF to the cells that Yosys counts in forty designs (hours; goes on where it stopped)
 	@$(CARGO) build --quiet -p xtask
-	@designs=$$($(BIN)/xtask luts --designs $(TARGET)/luts) && tools/synth.sh $$designs
+	@designs=$$($(BIN)/xtask luts --designs $(TARGET)/luts) && tools/synth.py $$designs
 	@$(BIN)/xtask luts $(TARGET)/synth
 
 # One point a job; sweeps on more than one machine: `make sweep-cluster SNAKEMAKE_OPTIONS='--executor slurm --jobs 100'`.

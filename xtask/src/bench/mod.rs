@@ -76,7 +76,7 @@ pub enum BenchError {
         module: String,
     },
     /// A netlist has a cell that is none of `UltraScale+`.
-    #[error("{}: no cell of UltraScale+ and no module is called `{cell}`; was this netlist made by tools/synth.sh?", path.display())]
+    #[error("{}: no cell of UltraScale+ and no module is called `{cell}`; was this netlist made by tools/synth.py?", path.display())]
     UnknownCell {
         /// The netlist.
         path: PathBuf,
@@ -99,7 +99,7 @@ pub enum BenchError {
     },
     /// Blocks have got longer.
     #[error(
-        "{design}: more levels of logic than {} has:\n  {}\nshorten these ways, or record them: RECORD=1 tools/synth.sh",
+        "{design}: more levels of logic than {} has:\n  {}\nshorten these ways, or record them: RECORD=1 tools/synth.py",
         path.display(), .blocks.join("\n  ")
     )]
     Longer {

@@ -8,7 +8,7 @@ use xtask::bench::cells;
 
 /// Sums Yosys' cell counts of a generated design by block, beside the predicted ones.
 ///
-/// STATISTICS is the output of `stat -json` after a synthesis without -flatten; `tools/synth.sh` does both.
+/// STATISTICS is the output of `stat -json` after a synthesis without -flatten; `tools/synth.py` does both.
 #[derive(clap::Args)]
 pub struct Args {
     /// Design file (TOML).

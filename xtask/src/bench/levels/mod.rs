@@ -159,7 +159,7 @@ impl Record {
 
     /// As a file.
     pub fn text(&self) -> String {
-        let header = "# Levels of logic of the longest way into each block, by Yosys: tools/synth.sh compares, and with RECORD=1 writes.\n";
+        let header = "# Levels of logic of the longest way into each block, by Yosys: tools/synth.py compares, and with RECORD=1 writes.\n";
         header.to_owned() + &toml::to_string(&self.0).unwrap_or_default()
     }
 }
