@@ -188,9 +188,9 @@ fn missed(cases: &[Fault<'_>]) -> Vec<String> {
             stress::run_batch(&plan, core, batch, stress::BATCH, 1, &|| ()).is_err()
         };
         // What is rare comes within some batches.
-        (0..20).any(wrong)
+        (0..100).any(wrong)
     });
-    let names = cases.iter().map(|(design, module, from, _)| format!("{from:?} in {module} of {}", design.name));
+    let names = cases.iter().map(|(design, module, _, to)| format!("{to:?} in {module} of {}", design.name));
     names.zip(noticed).filter(|(_, noticed)| !noticed).map(|(name, _)| name).collect()
 }
 
