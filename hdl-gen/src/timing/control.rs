@@ -292,6 +292,10 @@ impl<'a> Control<'a> {
         if self.now < self.beat_there || !offered {
             return false;
         }
+        // A frame of one beat has left the ingress FIFO.
+        if self.of.arrival.taken == 0 {
+            self.in_fifo = self.in_fifo.saturating_sub(1);
+        }
         self.idle_since = None;
         self.stress_buffers += 1;
         (self.next_open, self.cean_idle) = (FOREVER, FOREVER);

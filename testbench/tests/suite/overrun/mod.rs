@@ -26,7 +26,8 @@ struct Subject {
     built: Built,
 }
 
-/// Every sample format and every width, samples taken at once, one by one, and through a calibration in RAM.
+/// Every sample format and every width, samples taken at once, one by one, and through a calibration in RAM; frames of
+/// many beats and of one.
 fn subjects() -> &'static [Subject] {
     static SUBJECTS: OnceLock<Vec<Subject>> = OnceLock::new();
     SUBJECTS.get_or_init(|| {
@@ -44,12 +45,16 @@ fn subjects() -> &'static [Subject] {
         let [paper, reduced] = [PlanKind::Paper, PlanKind::Reduced];
         let mut controlled = small("controlled", 64, Samples::Float32, reduced, Outputs::Field);
         controlled.hardware.control = true;
+        // A whole frame is one beat.
+        let mut beat = small("beat", 128, Samples::Int16, reduced, Outputs::Field);
+        beat.sensor.rows = 2;
         let designs = [
             shipped("small-scanner"),
             small("single", 32, Samples::Float32, reduced, Outputs::Field),
             small("paper", 64, Samples::Uint16, paper, Outputs::Field),
             small("whole", 128, Samples::Int16, reduced, Outputs::Resultants),
             controlled,
+            beat,
         ];
         in_parallel(&designs, |design: &Design| {
             let plan = planned(design);
