@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ExpectedError, Filter, Regularisation};
 use crate::estimators::joint::JointConstants;
-use crate::estimators::{Constants, Estimator, StandardError};
+use crate::estimators::{Estimator, StandardError};
 use crate::kernel::Kernel;
 use crate::words::print_as_words;
 
@@ -87,9 +87,14 @@ impl Slip {
 }
 
 impl Algorithm {
-    /// The estimator with its constants.
-    pub fn constants(&self) -> Constants<'_> {
-        Constants::of(self.estimator, &self.joint)
+    /// Constants of the estimator, if it has any: what a design has of another one is left aside.
+    pub fn constants(&self) -> Option<&JointConstants> {
+        self.estimator.is_calibrated().then_some(&*self.joint)
+    }
+
+    /// What all forces are multiplied by.
+    pub fn gain(&self) -> f64 {
+        self.constants().map_or(1.0, |joint| joint.gain)
     }
 }
 

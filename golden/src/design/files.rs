@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest, Sha256};
 
 use super::Design;
-use crate::estimators::Constants;
 
 /// Name of the calibration file beside a resolved design.
 pub const CALIBRATION_FILE: &str = "calibration.csv";
@@ -93,10 +92,7 @@ impl Design {
         let calibration = self.input.calibration.as_ref().map(|calibration| (CALIBRATION_FILE, calibration.to_csv()));
         let points = self.input.curve.as_ref().filter(|curve| curve.law.is_none());
         let points = points.map(|curve| (CURVE_FILE, curve.to_csv()));
-        let correction = match self.algorithm.constants() {
-            Constants::Joint(constants) => constants.correction.as_ref(),
-            Constants::Line => None,
-        };
+        let correction = self.algorithm.constants().and_then(|constants| constants.correction.as_ref());
         let weights = correction.map(|correction| (WEIGHTS_FILE, correction.to_csv()));
         calibration.into_iter().chain(points).chain(weights).collect()
     }

@@ -7,7 +7,6 @@ use super::{
     Algorithm, DEFAULT_MAX_STANDARD_ERROR, Design, DesignError, Estimator, FileNames, Input, JointConstants, Kernel,
     NOISE_FLOOR_DIVISOR, Regularisation, Sensor, Slip, Tension, filter_keys, joint, rules,
 };
-use crate::estimators::Constants;
 
 /// `beside` are the files that the design names.
 pub(super) fn design(keys: DesignKeys, origin: &str, beside: Beside<'_>) -> Result<Design, DesignError> {
@@ -125,7 +124,7 @@ pub(super) fn keys(design: &Design, names: &FileNames) -> DesignKeys {
         slip: algorithm.slip.map(|Slip { limit, hysteresis }| SlipKeys { limit, hysteresis: Some(hysteresis) }),
         ..AlgorithmKeys::default()
     };
-    if let Constants::Joint(constants) = algorithm.constants() {
+    if let Some(constants) = algorithm.constants() {
         joint::state(constants, &names.weights, &mut keys);
     }
     DesignKeys {

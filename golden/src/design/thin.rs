@@ -1,12 +1,13 @@
 //! Layers so thin that a contact's edge falls between the taxels.
 
 use super::Design;
+use crate::estimators;
 
 impl Design {
     /// What to tell whose layer is too thin for its taxels; `None` if it is not. How thin is too thin, the estimator says.
     pub fn thin_layer(&self) -> Option<String> {
         let depth = self.sensor.depth_by_pitch();
-        let thin = self.algorithm.constants().thin(&self.sensor, self.algorithm.kernel);
+        let thin = estimators::thin(self.algorithm.constants(), &self.sensor, self.algorithm.kernel);
         self.sensor.is_thinner_than(thin.limit).then(|| {
             let remedy = thin.remedy;
             format!("the layer is {depth:.2} of a pitch thin, so that contacts fall between the taxels: {remedy}")

@@ -44,47 +44,14 @@ impl Estimator {
     }
 }
 
-/// An estimator as a design has it, with its constants.
-#[derive(Clone, Copy, Debug)]
-pub enum Constants<'a> {
-    /// It has none.
-    Line,
-    /// Those that `sptfra calibrate` finds.
-    Joint(&'a JointConstants),
+/// How thin a layer may be for an estimator: the grid search with its constants, or the line search, which has none.
+pub(crate) fn thin(constants: Option<&JointConstants>, sensor: &Sensor, kernel: Kernel) -> Thin {
+    constants.map_or_else(|| line::thin(sensor, kernel), |joint| joint.thin(sensor, kernel))
 }
 
-impl<'a> Constants<'a> {
-    /// Those of an estimator; what a design has of another one is left aside.
-    pub(crate) fn of(estimator: Estimator, joint: &'a JointConstants) -> Self {
-        match estimator {
-            Estimator::Line => Self::Line,
-            Estimator::Joint => Self::Joint(joint),
-        }
-    }
-
-    /// How thin a layer may be for this estimator.
-    pub(crate) fn thin(self, sensor: &Sensor, kernel: Kernel) -> Thin {
-        match self {
-            Self::Line => line::thin(sensor, kernel),
-            Self::Joint(joint) => joint.thin(sensor, kernel),
-        }
-    }
-
-    /// What all forces are multiplied by, if the estimator has a gain.
-    pub fn gain(&self) -> Option<f64> {
-        match self {
-            Self::Line => None,
-            Self::Joint(joint) => Some(joint.gain),
-        }
-    }
-}
-
-/// An estimator, ready for frames.
+/// An estimator, ready for frames: the grid search, or else the line search.
 #[derive(Clone, Debug)]
-pub(crate) enum Friction {
-    Line,
-    Joint(Box<Joint>),
-}
+pub(crate) struct Friction(Option<Box<Joint>>);
 
 /// Memory of an estimator, to be used again for the next frame.
 #[derive(Clone, Debug, Default)]
@@ -95,30 +62,21 @@ pub(crate) struct FrictionScratch {
 
 impl Friction {
     /// The estimator of a design.
-    pub(crate) fn new(constants: Constants, sensor: &Sensor) -> Self {
-        match constants {
-            Constants::Line => Self::Line,
-            Constants::Joint(joint) => Self::Joint(Box::new(Joint::new(joint, sensor.columns))),
-        }
+    pub(crate) fn new(constants: Option<&JointConstants>, sensor: &Sensor) -> Self {
+        Self(constants.map(|joint| Box::new(Joint::new(joint, sensor.columns))))
     }
 
     /// Finds the components `[mu_x, mu_y]`, and the status bits to raise.
     pub(crate) fn find(&self, inputs: &Inputs, scratch: &mut FrictionScratch) -> Estimate {
-        match self {
-            Self::Line => {
-                let (status, mu) =
-                    line::friction(&inputs.contact, inputs.sums, inputs.u, line::LEVEL, &mut scratch.line);
-                Estimate { status, mu }
-            }
-            Self::Joint(joint) => joint.find(inputs, &mut scratch.joint),
+        if let Some(joint) = &self.0 {
+            return joint.find(inputs, &mut scratch.joint);
         }
+        let (status, mu) = line::friction(&inputs.contact, inputs.sums, inputs.u, line::LEVEL, &mut scratch.line);
+        Estimate { status, mu }
     }
 
     /// What all forces are multiplied by, if the estimator has a gain.
     pub(crate) fn gain(&self) -> Option<f64> {
-        match self {
-            Self::Line => None,
-            Self::Joint(joint) => Some(joint.gain),
-        }
+        self.0.as_ref().map(|joint| joint.gain)
     }
 }

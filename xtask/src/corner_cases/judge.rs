@@ -177,7 +177,7 @@ impl<'a> Fields<'a> {
         Some(Self {
             engine: Engine::new(list, solver.reduced()?, orbits.all(), orbits.taxels()),
             full_scale: design.hardware.full_scale_in_frames(),
-            gain: design.algorithm.constants().gain().unwrap_or(1.0),
+            gain: design.algorithm.gain(),
         })
     }
 

@@ -127,7 +127,7 @@ impl<'a> Pass<'a> {
             list,
             filtered,
             factors: Factors::of(design),
-            gain: design.algorithm.constants().gain().unwrap_or(1.0),
+            gain: design.algorithm.gain(),
             operands: BTreeMap::new(),
             matrices: Vec::new(),
             place: vec![0; list.matrices.len()],
