@@ -45,7 +45,7 @@ pub fn rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
             told.input.noise = 0.01 * percent;
             let solver = Solver::new(&told)?;
             let mut inside = Vec::new();
-            for kind in Kind::ALL.into_iter().filter(|&kind| kind != Kind::Noisy) {
+            for kind in Kind::all().filter(|&kind| kind != Kind::Noisy) {
                 let found = frames(&told, &solver, kind, percent)?;
                 row(&mut text, &format!("{name},{percent},{kind}"), &found, "");
                 if !matches!(kind, Kind::Border | Kind::Mixed) {

@@ -87,7 +87,7 @@ fn contacts(design: &Design, seed: u64, tick: &mut dyn FnMut(Stage)) -> Result<V
     let solver = Solver::new(design)?;
     let columns = design.sensor.columns;
     // Noise is added to every kind here.
-    let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(|&kind| kind != Kind::Noisy).collect();
+    let kinds: Vec<Kind> = Kind::all().filter(|&kind| kind != Kind::Noisy).collect();
     let largest = 0.5 * design.hardware.full_scale_pa;
     let contact = |index: usize| -> Result<Contact, CalibrateError> {
         let (kind, round) = (kinds[index % kinds.len()], index / kinds.len());

@@ -57,51 +57,37 @@ pub enum Kind {
     Mixed,
 }
 
+/// All kinds in the order of their declaration, and what each is called for people, in a line.
+const TITLES: [(Kind, &str); 18] = [
+    (Kind::Sliding, "round, sliding"),
+    (Kind::TiltedAlong, "pressure tilted along the push, 0.6"),
+    (Kind::TiltedAcross, "pressure tilted across the push, 0.5"),
+    (Kind::Held, "held, half of the largest force (Mindlin)"),
+    (Kind::EvenShear, "even shear under Hertz's pressure"),
+    (Kind::Turned, "ellipses and rectangles, 2 : 1, turned"),
+    (Kind::SoftEdge, "soft edge, (1 - ρ²)²"),
+    (Kind::HardEdge, "hard edge, (1 - ρ²)^-0.4"),
+    (Kind::Spinning, "turns while it slides, at its edge as fast"),
+    (Kind::Border, "half beyond the grid's edge"),
+    (Kind::LargeTaxels, "taxels of 0.8 pitches"),
+    (Kind::Deeper, "layer 5 % deeper"),
+    (Kind::Shallower, "layer 5 % less deep"),
+    (Kind::LowerPoisson, "ν 5 % less, 0.4655"),
+    (Kind::GainSpread, "gains spread by 2 %"),
+    (Kind::Noisy, "noise 1 %"),
+    (Kind::MixedInside, "all of it, at random, µ 0.1 to 1, within the grid"),
+    (Kind::Mixed, "all of it, at random, µ 0.1 to 1, anywhere"),
+];
+
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 18] = [
-        Self::Sliding,
-        Self::TiltedAlong,
-        Self::TiltedAcross,
-        Self::Held,
-        Self::EvenShear,
-        Self::Turned,
-        Self::SoftEdge,
-        Self::HardEdge,
-        Self::Spinning,
-        Self::Border,
-        Self::LargeTaxels,
-        Self::Deeper,
-        Self::Shallower,
-        Self::LowerPoisson,
-        Self::GainSpread,
-        Self::Noisy,
-        Self::MixedInside,
-        Self::Mixed,
-    ];
+    pub fn all() -> impl Iterator<Item = Self> {
+        TITLES.into_iter().map(|(kind, _)| kind)
+    }
 
     /// For people, in a line.
     pub fn title(self) -> &'static str {
-        match self {
-            Self::Sliding => "round, sliding",
-            Self::TiltedAlong => "pressure tilted along the push, 0.6",
-            Self::TiltedAcross => "pressure tilted across the push, 0.5",
-            Self::Held => "held, half of the largest force (Mindlin)",
-            Self::EvenShear => "even shear under Hertz's pressure",
-            Self::Turned => "ellipses and rectangles, 2 : 1, turned",
-            Self::SoftEdge => "soft edge, (1 - ρ²)²",
-            Self::HardEdge => "hard edge, (1 - ρ²)^-0.4",
-            Self::Spinning => "turns while it slides, at its edge as fast",
-            Self::Border => "half beyond the grid's edge",
-            Self::LargeTaxels => "taxels of 0.8 pitches",
-            Self::Deeper => "layer 5 % deeper",
-            Self::Shallower => "layer 5 % less deep",
-            Self::LowerPoisson => "ν 5 % less, 0.4655",
-            Self::GainSpread => "gains spread by 2 %",
-            Self::Noisy => "noise 1 %",
-            Self::MixedInside => "all of it, at random, µ 0.1 to 1, within the grid",
-            Self::Mixed => "all of it, at random, µ 0.1 to 1, anywhere",
-        }
+        TITLES[self as usize].1
     }
 
     /// Frames of this kind, one for each seed, with what pulls in them.

@@ -396,7 +396,7 @@ fn the_order_shows_on_contacts_of_every_kind() {
         let (mut design, mut found) = (design("sensor1-fast"), 0);
         (design.sensor.rows, design.sensor.depth_mm) = (6, depth_mm);
         let (columns, rows) = (design.sensor.columns, design.sensor.rows);
-        for kind in golden::scene::Kind::ALL {
+        for kind in golden::scene::Kind::all() {
             let frames = kind.frames(&design.sensor, 0.8, 500..508).unwrap();
             let good: Vec<Vec<f64>> = frames.into_iter().map(|frame| frame.stress).collect();
             let turn = |frame: &Vec<f64>| (0..frame.len()).map(|at| frame[(at % rows) * columns + at / rows]).collect();
@@ -548,7 +548,7 @@ fn noise_that_restarts_the_average() {
 #[test]
 fn an_array_with_its_frames_last() {
     let (design, mut found) = (pad(10, 10, 3.0), 0);
-    for kind in golden::scene::Kind::ALL {
+    for kind in golden::scene::Kind::all() {
         let frames: Vec<Vec<f64>> =
             kind.frames(&design.sensor, 0.8, 500..510).unwrap().into_iter().map(|frame| frame.stress).collect();
         let last: Vec<Vec<f64>> =
@@ -572,7 +572,7 @@ fn a_file_with_a_line_for_each_taxel() {
             let findings = check(&design, frames, None);
             findings.into_iter().find(|finding| finding.to_string().contains("numpy.transpose"))
         };
-        for kind in golden::scene::Kind::ALL {
+        for kind in golden::scene::Kind::all() {
             let contacts = kind.frames(&design.sensor, 0.8, 500..500 + taxels.div_ceil(20) as u64).unwrap();
             // Each is pressed and released within 20 frames, with noise.
             let frame = |at: usize| -> Vec<f64> {

@@ -80,7 +80,7 @@ fn kinds() {
     for sensor in ["sensor1", "sensor2"] {
         let design = design(&format!("{sensor}-clipped-wide"));
         let solver = Solver::new(&design).unwrap();
-        for kind in Kind::ALL {
+        for kind in Kind::all() {
             let count = if has_own_friction(kind) { 2000 } else { 200 };
             let mut frames = kind.frames(&design.sensor, 0.5, 1000..1000 + count).unwrap();
             for stress in frames.iter_mut().flat_map(|frame| &mut frame.stress) {

@@ -124,7 +124,7 @@ fn check_measures_crosstalk_and_invents_none() {
     let (mut sets, mut worst) = (0, 0.0_f64);
     for name in ["sensor1-wide", "sensor2-clipped-wide"] {
         let design = shipped(name);
-        for kind in Kind::ALL {
+        for kind in Kind::all() {
             let contacts = kind.frames(&design.sensor, 0.5, 500..524).unwrap();
             for noise in [0.0, 0.01, 0.02] {
                 let frames = recorded(&design, &contacts, (0.0, noise), &mut random);
@@ -164,7 +164,7 @@ fn crosstalk_of_small_grids() {
         );
         let design = Design::from_toml(&text, "pad.toml").unwrap();
         let (mut found, mut worst, mut invented) = (0, 0.0_f64, 0);
-        for kind in Kind::ALL {
+        for kind in Kind::all() {
             let contacts = kind.frames(&design.sensor, 0.5, 500..524).unwrap();
             let share_of = |share: f64, noise: f64, random: &mut ChaCha8Rng| {
                 let findings = check(&design, &recorded(&design, &contacts, (share, noise), random), None);
@@ -212,7 +212,7 @@ fn check_measures_unequal_shares() {
         }
     };
     let mut missed = 0;
-    for kind in Kind::ALL.into_iter().step_by(3) {
+    for kind in Kind::all().step_by(3) {
         let contacts = kind.frames(&design.sensor, 0.5, 500..524).unwrap();
         for shares in [[0.02, 0.0], [0.0, 0.03], [0.04, 0.01]] {
             let crossed: Vec<SceneFrame> = contacts

@@ -134,7 +134,7 @@ const FIRST_SEED: u64 = 1000;
 /// [`SceneError`] if they cannot be computed for this geometry.
 pub fn frames_of_kinds(sensor: &Sensor, frames: u64) -> Result<Vec<(Kind, Vec<SceneFrame>)>, SceneError> {
     let of = |kind: Kind| kind.frames(sensor, FRICTION, FIRST_SEED..FIRST_SEED + frames).map(|frames| (kind, frames));
-    Kind::ALL.into_iter().map(of).collect()
+    Kind::all().map(of).collect()
 }
 
 /// Frames with known forces.

@@ -15,7 +15,7 @@ fn compare(design: &mut Design, count: u64) {
     state_errors(design, 1, &mut |_| ()).unwrap();
     let expected = design.algorithm.expected_error.clone().unwrap();
     let solver = Solver::new(design).unwrap();
-    let kinds = Kind::ALL.into_iter().filter(|kind| !matches!(kind, Kind::Noisy | Kind::Border | Kind::Mixed));
+    let kinds = Kind::all().filter(|kind| !matches!(kind, Kind::Noisy | Kind::Border | Kind::Mixed));
     let cases = kinds.flat_map(|kind| [0.3, 0.5, 0.7].map(|friction| (kind, friction)));
     // Each case has seeds of its own: equal seeds are equal places.
     let seeds = (8000..).step_by(1000).map(|first| first..first + count);

@@ -65,8 +65,9 @@ fn noisy(frames: &mut [SceneFrame], noise: f64) {
 fn frames_of_every_kind_have_an_answer_not_far_from_the_truth() {
     let joint = design("sensor2-fast");
     let [solver, wide] = [&joint, &design("sensor2-wide")].map(|design| Solver::new(design).unwrap());
-    for kind in Kind::ALL {
+    for (index, kind) in Kind::all().enumerate() {
         let label = kind.title();
+        assert_eq!(kind as usize, index, "{label}");
         let frames = kind.frames(&joint.sensor, 0.5, 0..24).unwrap();
         let Judged { errors, .. } = judge(&solver, &frames);
         assert!(frames.iter().all(|frame| frame.friction <= 1.0 + 1e-9 && frame.direction.abs() <= PI));
@@ -109,7 +110,7 @@ fn a_standard_error_is_right_at_the_noise_of_the_design() {
             noisy(&mut frames, design.input.noise);
             frames
         };
-        let inside = Kind::ALL.into_iter().filter(|kind| !matches!(kind, Kind::Noisy | Kind::Border | Kind::Mixed));
+        let inside = Kind::all().filter(|kind| !matches!(kind, Kind::Noisy | Kind::Border | Kind::Mixed));
         let Judged { within: [one, two], .. } = judge(&solver, &inside.flat_map(noisy).collect::<Vec<_>>());
         assert!((55.0..78.0).contains(&one) && two > 94.0, "{name}: {one:.0} {two:.0}");
         let Judged { low_confidence, within: [_, two], .. } = judge(&solver, &noisy(Kind::Border));
@@ -132,7 +133,7 @@ fn table() {
         let designs = ["none", "fast", "wide"].map(|kind| design(&format!("{sensor}-{kind}")));
         let solvers = designs.each_ref().map(|design| Solver::new(design).unwrap());
         let number = &sensor[6..];
-        for kind in Kind::ALL {
+        for kind in Kind::all() {
             let all = has_own_friction(kind);
             let of = |friction: f64| -> Vec<SceneFrame> {
                 let frames = if all { 10 * FRAMES } else { FRAMES };

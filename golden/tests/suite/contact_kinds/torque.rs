@@ -64,7 +64,7 @@ fn judge(solver: &Solver, frames: &[SceneFrame]) -> Torques {
 #[test]
 fn torques_are_near_the_true_ones_on_every_kind() {
     let solver = Solver::new(&design("sensor2-wide")).unwrap();
-    for kind in Kind::ALL {
+    for kind in Kind::all() {
         let frames = kind.frames(solver.matrices().sensor(), 0.5, 0..8).unwrap();
         let Torques { place, along, beside, about_middle, own, is } = judge(&solver, &frames);
         let said = format!("{}: {place:?} {along} {beside:?} {about_middle:?} {own:?} {is:?}", kind.title());
@@ -88,7 +88,7 @@ fn table() {
     let row = |Quantiles { median, most, worst }: Quantiles| format!("{median:.2},{most:.2},{worst:.2}");
     let solvers = ["sensor1", "sensor2"]
         .map(|sensor| ["none", "wide"].map(|kind| Solver::new(&design(&format!("{sensor}-{kind}"))).unwrap()));
-    for kind in Kind::ALL {
+    for kind in Kind::all() {
         let count = if has_own_friction(kind) { 2000 } else { 200 };
         for (number, [line, wide]) in solvers.iter().enumerate() {
             let frames = kind.frames(wide.matrices().sensor(), 0.5, 1000..1000 + count).unwrap();

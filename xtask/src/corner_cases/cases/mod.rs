@@ -246,7 +246,7 @@ fn contacts(cases: &mut Cases) -> Result<(), CornerCasesError> {
 /// Contacts anywhere within the grid of kinds that no constant was fitted to.
 fn kinds(cases: &mut Cases) -> Result<(), CornerCasesError> {
     let sensor = sensor_1();
-    for kind in Kind::ALL {
+    for kind in Kind::all() {
         let made = kind.frames(&sensor, 0.5, 0..DIRECTIONS as u64)?;
         let truth = Some(made.iter().map(Outcome::from).collect());
         let frames = made.into_iter().map(|frame| frame.stress).collect();
