@@ -155,7 +155,7 @@ pub fn read_outcomes(path: &Path, frames: usize) -> Result<Vec<Outcome>, FrameEr
     if is_named || matches!(own, Err(FrameError::Length { .. })) {
         match (recorded::forces(path, &table), &own) {
             (Err(_), Err(_)) => {}
-            (Err(error), Ok(_)) => return Err(unusable(path, 1, error.to_string())),
+            (Err(error), Ok(_)) => return Err(unusable(path, 1, &error.to_string())),
             (Ok(measured), _) => match measured_outcomes(path, frames, &measured) {
                 Err(_) if own.is_err() && !is_named => {}
                 outcomes => return outcomes,
@@ -169,8 +169,10 @@ pub fn read_outcomes(path: &Path, frames: usize) -> Result<Vec<Outcome>, FrameEr
 }
 
 /// An error of forces that errors cannot be taken against.
-fn unusable(path: &Path, line: usize, problem: String) -> FrameError {
-    FrameError::NoForces { path: path.to_path_buf(), line, problem }
+fn unusable(path: &Path, line: usize, problem: &str) -> FrameError {
+    let remedy = "true forces lie beside the frames of `sptfra scene`, in FRAMES.forces.csv, a line each that begins with \
+                  status, F_x, F_y, F_z, mu and phi";
+    FrameError::line(path, line, format_args!("{problem}, so these are no forces; {remedy}"))
 }
 
 /// The same of a table of measured forces.
@@ -186,7 +188,7 @@ fn measured_outcomes(path: &Path, frames: usize, measured: &Measured) -> Result<
             let friction = if tangential > 0.0 { tangential / z.abs().max(f64::MIN_POSITIVE) } else { 0.0 };
             Ok(Outcome { force: [x, y, sign * z], friction, direction: y.atan2(x) })
         }
-        _ => Err(unusable(path, line + 1, "F_x, F_y or F_z is not known, and errors need all three".to_owned())),
+        _ => Err(unusable(path, line + 1, "F_x, F_y or F_z is not known, and errors need all three")),
     };
     measured.forces.iter().enumerate().map(outcome).collect()
 }
@@ -259,11 +261,10 @@ fn contact(&[taxels, status, x, y, fx, fy, fz, mu, standard_error]: &[f64; 9]) -
 /// The rows of a force file, each long enough.
 fn own_rows(path: &Path, table: &Table<'_>, frames: usize) -> Result<Vec<Vec<f64>>, FrameError> {
     if table.names.iter().any(|name| name.contains("body0_")) {
-        return Err(FrameError::Format {
-            path: path.to_path_buf(),
-            what: "a force file of an older version, whose columns body0_taxels, body0_status … number contacts from 0",
-            remedy: "rename these columns contact1_taxels, contact1_status …, numbered from 1, or write the file anew",
-        });
+        let what =
+            "a force file of an older version, whose columns body0_taxels, body0_status … number contacts from 0";
+        let remedy = "rename these columns contact1_taxels, contact1_status …, numbered from 1, or write the file anew";
+        return Err(FrameError::format(path, what, remedy));
     }
     let mut numbers = Numbers::new(path);
     let mut row = |&(line, ref cells): &(usize, Vec<&[u8]>)| -> Result<Vec<f64>, FrameError> {
@@ -292,7 +293,7 @@ fn own_rows(path: &Path, table: &Table<'_>, frames: usize) -> Result<Vec<Vec<f64
         return Err(FrameError::Count { path: path.to_path_buf(), found: rows.len(), expected: frames });
     }
     match rows.iter().enumerate().find_map(|(index, row)| Some((index, no_forces(row)?))) {
-        Some((index, problem)) => Err(FrameError::NoForces { path: path.to_path_buf(), line: index + 1, problem }),
+        Some((index, problem)) => Err(unusable(path, index + 1, &problem)),
         None => Ok(rows),
     }
 }

@@ -43,11 +43,8 @@ impl Blocks {
         let Sensor { columns, rows, .. } = target.sensor;
         let path = lines.cells.path.display().to_string();
         let (unit, remark) = match self.unit {
-            Some((line, unit)) => header::worth(&unit, target, -1.0).map_err(|problem| FrameError::Shape {
-                path: lines.cells.path.clone(),
-                line,
-                problem,
-            })?,
+            Some((line, unit)) => header::worth(&unit, target, -1.0)
+                .map_err(|problem| FrameError::line(&lines.cells.path, line, problem))?,
             None => (None, None),
         };
         let mut text = Text::default();
@@ -89,7 +86,7 @@ pub(super) fn join<'a>(
     if rows == 1 || of_length(&all, target.sensor.taxels()) > 0 {
         return Ok(None);
     }
-    let shape = |(line, problem)| FrameError::Shape { path: path.to_path_buf(), line, problem };
+    let shape = |(line, problem): (usize, String)| FrameError::line(path, line, problem);
     let wrong = |line: usize, problem: String| shape((line, problem));
     // Numbers of the columns above frames, as pandas writes them: without them the rows are whole frames.
     let numbers = Sensor { rows: 1, ..target.sensor.clone() };

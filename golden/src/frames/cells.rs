@@ -81,7 +81,11 @@ impl Cells {
         let separator = self.separator.unwrap_or_else(|| Separator::of(content));
         let content = separator.trim(line);
         match foreign(content) {
-            Some(separator) => Err(FrameError::Separator { path: self.path.clone(), line: self.number, separator }),
+            Some(separator) => {
+                let problem = format!("{separator} separates the values");
+                let remedy = "separate them by commas, semicolons, tabs or spaces";
+                Err(FrameError::line(&self.path, self.number, format_args!("{problem}; {remedy}")))
+            }
             None => Ok(Line::Cells(content, separator)),
         }
     }

@@ -1,5 +1,6 @@
 //! What is wrong with files of frames, where, and what to do about it.
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use crate::design::Samples;
@@ -18,23 +19,6 @@ pub enum FrameError {
         path: PathBuf,
         /// What the system said.
         source: std::io::Error,
-    },
-    /// The file has no frame in it.
-    #[error(
-        "{}: no frame in the file; write one line of {expected} stresses, separated by commas, for each frame",
-        path.display()
-    )]
-    Empty {
-        /// The file.
-        path: PathBuf,
-        /// Values in a frame.
-        expected: usize,
-    },
-    /// The file has no more than a line that numbers the columns.
-    #[error("{remark}, and no frame follows it; if it is a frame, write a line of names above it")]
-    HeaderAlone {
-        /// What it is taken for, and where.
-        remark: String,
     },
     /// A line with too few or too many values.
     #[error(
@@ -66,95 +50,6 @@ pub enum FrameError {
         /// What to do.
         remedy: String,
     },
-    /// Commas, or points between semicolons, that are decimal ones or separators of thousands.
-    #[error(
-        "{}, line {line}, column {column}: \"{text}\" is a number with a decimal {mark} or one with separators of thousands, \
-         and three digits follow every {mark} of the file; {}, or remove the separators",
-        path.display(), if *mark == "comma" { "write decimal points" } else { "separate the values by commas" }
-    )]
-    Thousands {
-        /// The file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: usize,
-        /// Position on the line, from 1.
-        column: usize,
-        /// What is there.
-        text: String,
-        /// "comma" or "point".
-        mark: &'static str,
-    },
-    /// Lines or columns that do not fit the sensor.
-    #[error("{}, line {line}: {problem}", path.display())]
-    Shape {
-        /// The file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: usize,
-        /// What is wrong, and what to do.
-        problem: String,
-    },
-    /// A character between the values that separates none.
-    #[error(
-        "{}, line {line}: {separator} separates the values; separate them by commas, semicolons, tabs or spaces",
-        path.display()
-    )]
-    Separator {
-        /// The file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: usize,
-        /// What does, in words.
-        separator: &'static str,
-    },
-    /// A value that the design's integer samples cannot be.
-    #[error(
-        "{}, {place}: {value} is no {samples}, as hardware.samples says that the sensor's counts are; {}",
-        path.display(), samples.remedy()
-    )]
-    Sample {
-        /// The file.
-        path: PathBuf,
-        /// Line and column.
-        place: String,
-        /// What is there.
-        value: f64,
-        /// What it should be.
-        samples: Samples,
-    },
-    /// A `.npy` file that holds something else than frames.
-    #[error(
-        "{}: {problem}; save frames by taxels, or frames by rows by columns, with numpy.save", path.display()
-    )]
-    Array {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        problem: String,
-    },
-    /// A file of another format.
-    #[error("{}: the file is {what}; {remedy}", path.display())]
-    Format {
-        /// The file.
-        path: PathBuf,
-        /// What it is, in words.
-        what: &'static str,
-        /// What to do.
-        remedy: &'static str,
-    },
-    /// A file of forces that holds something else.
-    #[error(
-        "{}, line {line}: {problem}, so these are no forces; true forces lie beside the frames of `sptfra scene`, in \
-         FRAMES.forces.csv, a line each that begins with status, F_x, F_y, F_z, mu and phi", path.display()
-    )]
-    NoForces {
-        /// The file.
-        path: PathBuf,
-        /// Which of the lines with numbers, from 1.
-        line: usize,
-        /// What is wrong.
-        problem: String,
-    },
     /// A force file that does not belong to the frames.
     #[error(
         "{}: forces of {} where there are {expected}; give the file that was made with these frames",
@@ -168,6 +63,9 @@ pub enum FrameError {
         /// Frames.
         expected: usize,
     },
+    /// What else is wrong: the file and the place in it, and what to do.
+    #[error("{0}")]
+    Wrong(String),
     /// The frames of another sensor.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
@@ -177,9 +75,48 @@ pub enum FrameError {
 }
 
 impl FrameError {
-    pub(crate) fn thousands(path: &Path, unclear: &Unclear) -> Self {
-        let Unclear { place: [line, column], text, mark } = unclear.clone();
-        Self::Thousands { path: path.to_path_buf(), line, column, text, mark }
+    /// What is wrong with a file as a whole.
+    pub(crate) fn file(path: &Path, problem: impl Display) -> Self {
+        Self::Wrong(format!("{}: {problem}", path.display()))
+    }
+
+    /// What is wrong at a place of a file.
+    pub(crate) fn at(path: &Path, place: impl Display, problem: impl Display) -> Self {
+        Self::Wrong(format!("{}, {place}: {problem}", path.display()))
+    }
+
+    /// What is wrong with a line, from 1: as with lines or columns that do not fit the sensor.
+    pub(crate) fn line(path: &Path, line: usize, problem: impl Display) -> Self {
+        Self::at(path, format_args!("line {line}"), problem)
+    }
+
+    /// A `.npy` file that holds something else than frames.
+    pub(crate) fn array(path: &Path, problem: impl Display) -> Self {
+        let remedy = "save frames by taxels, or frames by rows by columns, with numpy.save";
+        Self::file(path, format_args!("{problem}; {remedy}"))
+    }
+
+    /// A file of another format.
+    pub(crate) fn format(path: &Path, what: &str, remedy: &str) -> Self {
+        Self::file(path, format_args!("the file is {what}; {remedy}"))
+    }
+
+    /// A value that the design's integer samples cannot be.
+    pub(crate) fn sample(path: &Path, place: &str, value: f64, samples: Samples) -> Self {
+        let remedy = samples.remedy();
+        let problem =
+            format!("{value} is no {samples}, as hardware.samples says that the sensor's counts are; {remedy}");
+        Self::at(path, place, problem)
+    }
+
+    /// Commas, or points between semicolons, that are decimal ones or separators of thousands.
+    pub(crate) fn thousands(path: &Path, Unclear { place: [line, column], text, mark }: &Unclear) -> Self {
+        let remedy = if *mark == "comma" { "write decimal points" } else { "separate the values by commas" };
+        let problem = format!(
+            "\"{text}\" is a number with a decimal {mark} or one with separators of thousands, and three digits follow \
+             every {mark} of the file; {remedy}, or remove the separators"
+        );
+        Self::at(path, format_args!("line {line}, column {column}"), problem)
     }
 
     /// Whether a line of text is one that was cut off at its beginning: too few values, or a first one that is none.

@@ -106,9 +106,13 @@ pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -
         read_text(path, &layout.into(), &design.into())?;
     if frames.is_empty() {
         return Err(if remarks.is_empty() {
-            FrameError::Empty { path: path.to_path_buf(), expected: design.sensor.taxels() }
+            let remedy =
+                format!("write one line of {} stresses, separated by commas, for each frame", design.sensor.taxels());
+            FrameError::file(path, format_args!("no frame in the file; {remedy}"))
         } else {
-            FrameError::HeaderAlone { remark: remarks.join("; ") }
+            // No more than a line that numbers the columns; the remark says where.
+            let problem = "no frame follows it; if it is a frame, write a line of names above it";
+            FrameError::Wrong(format!("{}, and {problem}", remarks.join("; ")))
         });
     }
     let samples = design.hardware.samples;
@@ -117,8 +121,7 @@ pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -
     let Some((frame, column)) = found else {
         let times = match without_gaps(times) {
             Err(place) if header.time.is_some() => {
-                let (line, problem) = (lines[place], NO_TIME.to_owned());
-                return Err(FrameError::Shape { path: path.to_path_buf(), line, problem });
+                return Err(FrameError::line(path, lines[place], NO_TIME));
             }
             times => times.unwrap_or_default(),
         };
@@ -134,7 +137,7 @@ pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -
         Some(line) => format!("line {line}, column {}", header.column(labels, column)),
         None => format!("[{frame}, {}]", labels + column),
     };
-    Err(FrameError::Sample { path: path.to_path_buf(), place, value: frames[frame][column], samples })
+    Err(FrameError::sample(path, &place, frames[frame][column], samples))
 }
 
 /// Of a line without a time, where others have one.
@@ -147,7 +150,7 @@ pub(crate) fn between(lines: usize) -> String {
 
 /// The frames of a file with their lines.
 fn read_text(path: &Path, layout: &Layout, target: &Target) -> Result<Text, FrameError> {
-    let wrong = |problem| FrameError::Array { path: path.to_path_buf(), problem };
+    let wrong = |problem: String| FrameError::array(path, problem);
     let array = match content(path)? {
         Content::Text(bytes) => return text::read(path, &bytes, layout, target),
         Content::Array(array) => array,
@@ -211,7 +214,7 @@ enum Content {
 fn content(path: &Path) -> Result<Content, FrameError> {
     let mut bytes = std::fs::read(path).map_err(|source| FrameError::Read { path: path.to_path_buf(), source })?;
     if bytes.starts_with(npy::MAGIC) {
-        let array = npy::parse(&bytes).map_err(|problem| FrameError::Array { path: path.to_path_buf(), problem })?;
+        let array = npy::parse(&bytes).map_err(|problem| FrameError::array(path, problem))?;
         return Ok(Content::Array(array));
     }
     if bytes.starts_with(BYTE_ORDER_MARK) {
@@ -228,7 +231,7 @@ fn content(path: &Path) -> Result<Content, FrameError> {
         bytes = String::from_utf16_lossy(&letters).into_bytes();
     }
     match format::other(&bytes) {
-        Some((what, remedy)) => Err(FrameError::Format { path: path.to_path_buf(), what, remedy }),
+        Some((what, remedy)) => Err(FrameError::format(path, what, remedy)),
         None => Ok(Content::Text(bytes)),
     }
 }

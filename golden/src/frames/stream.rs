@@ -60,11 +60,8 @@ impl FrameLines {
     pub fn frame(&mut self, line: &[u8]) -> Result<Option<Vec<f64>>, FrameError> {
         // A mark may come first.
         if line.len() > 3 && line.chunks_exact(2).skip(1).all(|pair| pair.contains(&0)) {
-            return Err(FrameError::Format {
-                path: self.lines.cells.path.clone(),
-                what: "UTF-16, two bytes a character",
-                remedy: "pipe it through iconv -f UTF-16 -t UTF-8, or save it to a file, which is read as it is",
-            });
+            let remedy = "pipe it through iconv -f UTF-16 -t UTF-8, or save it to a file, which is read as it is";
+            return Err(FrameError::format(&self.lines.cells.path, "UTF-16, two bytes a character", remedy));
         }
         let Some(frame) = self.lines.row(line).map_err(|error| self.of_row(error))? else { return Ok(None) };
         self.lines.unclear()?;
@@ -76,14 +73,13 @@ impl FrameLines {
         if *self.is_numbered.get_or_insert(is_numbered) && is_summary(line) {
             let problem =
                 "a mean or the like, where the lines before have a number: take the line out, or give frames a number";
-            let path = self.lines.cells.path.clone();
-            return self.lines.leave_out(number, FrameError::Shape { path, line: number, problem: problem.to_owned() });
+            let wrong = FrameError::line(&self.lines.cells.path, number, problem);
+            return self.lines.leave_out(number, wrong);
         }
         let wrong = frame.iter().position(|&value| !self.samples.takes(value));
         let Some(column) = wrong else { return Ok(Some(frame)) };
         let place = format!("line {}, column {}", self.lines.cells.number, self.lines.column(column));
-        let path = self.lines.cells.path.clone();
-        Err(FrameError::Sample { path, place, value: frame[column], samples: self.samples })
+        Err(FrameError::sample(&self.lines.cells.path, &place, frame[column], self.samples))
     }
 }
 

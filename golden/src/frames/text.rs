@@ -182,14 +182,11 @@ impl Lines {
             }
         }
         if let Some((line, unit)) = self.unit.take().filter(|_| self.header.unit.is_none()) {
-            let (path, wrong) = (self.cells.path.display().to_string(), self.cells.path.clone());
-            let (worth, remark) = header::worth(&unit, &self.target, 1.0).map_err(|problem| FrameError::Shape {
-                path: wrong,
-                line,
-                problem,
-            })?;
+            let path = &self.cells.path;
+            let (worth, remark) =
+                header::worth(&unit, &self.target, 1.0).map_err(|problem| FrameError::line(path, line, problem))?;
             self.header.unit = worth;
-            self.remarks.extend(remark.map(|remark| format!("{path}, line {line}: {remark}")));
+            self.remarks.extend(remark.map(|remark| format!("{}, line {line}: {remark}", path.display())));
         }
         self.cells.begin(separator);
         match self.values(separator, content) {
@@ -229,8 +226,8 @@ impl Lines {
 
     /// The header of these names.
     fn named(&self, line: usize, names: Vec<String>) -> Result<Header, FrameError> {
-        let wrong = |problem| FrameError::Shape { path: self.cells.path.clone(), line, problem };
-        Header::of(line, names, &self.target, &self.layout).map_err(wrong)
+        Header::of(line, names, &self.target, &self.layout)
+            .map_err(|problem| FrameError::line(&self.cells.path, line, problem))
     }
 
     /// Adds what is to be said of the line.
@@ -314,13 +311,15 @@ impl Lines {
             Some(width) => (filled > width || cells < width, width, "the first row has"),
             None => return Ok(()),
         };
+        if !is_wrong {
+            return Ok(());
+        }
         let problem = format!(
             "{} where {than}: {expected}; are these decimal commas or separators of thousands? Separate the cells by \
              semicolons, and give each column a name and each row all its cells",
             counted(if filled > expected { filled } else { cells }, "cell")
         );
-        let wrong = FrameError::Shape { path: self.cells.path.clone(), line: self.cells.number, problem };
-        if is_wrong { Err(wrong) } else { Ok(()) }
+        Err(FrameError::line(&self.cells.path, self.cells.number, problem))
     }
 
     /// A line of another length than `expected`, the labels among it.

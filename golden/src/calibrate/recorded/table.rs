@@ -286,11 +286,7 @@ fn read(path: &Path, table: &Table<'_>, example: &str, guess: &Guess) -> Result<
     }
     numbers.end()?;
     measured.contacts = contact.map(|_| contacts);
-    let times = without_gaps(times).map_err(|place| FrameError::Shape {
-        path: path.to_path_buf(),
-        line: table.rows[place].0,
-        problem: NO_TIME.to_owned(),
-    })?;
+    let times = without_gaps(times).map_err(|place| FrameError::line(path, table.rows[place].0, NO_TIME))?;
     if let Some((_, unknown)) = times.as_ref().filter(|(_, unknown)| *unknown > 0) {
         measured.remarks.push(format!("{}: {}", path.display(), between(*unknown)));
     }
