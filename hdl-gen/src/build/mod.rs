@@ -25,20 +25,28 @@ use crate::plan::schedule::Schedule;
 use crate::plan::smoothing::SmoothingPlan;
 use crate::plan::standard_error::StandardErrorPlan;
 use crate::plan::vector_formats::{Formats, arms};
-use crate::plan::{Condition, FEWEST_FORCE_STEPS, MOST_ROUNDING, Nnz, Plan, PlanError, Thresholds, channels, elements};
+use crate::plan::{Condition, Nnz, Plan, PlanError, Thresholds, channels, elements};
 use crate::resources::Resources;
 use crate::timing::{Timeline, control};
 use durations::durations;
 
+/// Fewest steps of a force format that a taxel's force at full scale must span.
+const FEWEST_FORCE_STEPS: u32 = 64;
+
+/// The roundings of a frame may add at most this part of a taxel's force at full scale to it, if all of them add up;
+/// as they come they make less than a tenth of that.
+const MOST_ROUNDING: f64 = 4.0;
+
 /// Words that do not fit one multiplier a lane have hardware where two make one product.
 fn check_widths(design: &Design) -> Result<(), PlanError> {
     let factors = Factors::of(design);
-    let data = |why, cure| Err(PlanError::Wide { key: "data_bits", bits: factors.data_bits, why, cure });
+    let wide = |key, bits, why, cure| Err(PlanError::Key(format!("[hardware] {key} = {bits}: {why}; write {cure}")));
+    let data = |why, cure| wide("data_bits", factors.data_bits, why, cure);
     if factors.is_wide() && Multiplier::of_part(&design.hardware.part) == Multiplier::Split {
         let why = "the part multiplies 18 x 18 bits, and words beyond 18 x 27 take multipliers of 18 x 27";
         let cure = "coefficient_bits = 18 and data_bits = 27, or another part";
         if !factors.has_wide_data() {
-            return Err(PlanError::Wide { key: "coefficient_bits", bits: factors.coefficient_bits, why, cure });
+            return wide("coefficient_bits", factors.coefficient_bits, why, cure);
         }
         return data(why, cure);
     }
@@ -129,10 +137,19 @@ fn check_force_resolution(
     condition: Condition,
     rounding_n: f64,
 ) -> Result<(), PlanError> {
-    let taxel_n = taxel_force_n(design);
+    let (taxel_n, condition) = (taxel_force_n(design), condition.aat);
+    let wrong = |bits: u32, problem: &str| {
+        Err(PlanError::Key(format!(
+            "[hardware] data_bits = {bits}: {problem} ({taxel_n:.3e} N); the condition number of A A^T is {condition:.1e}: \
+             write a larger regularisation under [algorithm], lower [sensor] depth_mm, raise the pitch, or raise data_bits"
+        )))
+    };
     if rounding_n * MOST_ROUNDING > taxel_n {
-        let (bits, condition) = (design.hardware.data_bits, condition.aat);
-        return Err(PlanError::ForceRounding { bits, rounding_n, taxel_n, condition });
+        let moved = format!("rounding alone could move the force of a taxel by {rounding_n:.1e} N");
+        return wrong(
+            design.hardware.data_bits,
+            &format!("{moved}, more than 1/{MOST_ROUNDING} of that at full scale"),
+        );
     }
     let force = match (formats.folded, design.algorithm.outputs) {
         (Some(folded), Outputs::Field) => Some(("A+ r", folded.taxel_force)),
@@ -142,14 +159,13 @@ fn check_force_resolution(
     };
     for (vector, format) in std::iter::once(("|w|", formats.weight)).chain(force) {
         if format.step() * f64::from(FEWEST_FORCE_STEPS) > taxel_n {
-            return Err(PlanError::ForceResolution {
-                vector,
-                bits: format.bits,
-                worst_n: format.bound as f64 * format.step(),
-                step_n: format.step(),
-                taxel_n,
-                condition: condition.aat,
-            });
+            let step_n = format.step();
+            let problem = format!(
+                "the worst case of {vector} is {:.3e} N, so one step is {step_n:.3e} N, more than 1/{FEWEST_FORCE_STEPS} of a \
+                 taxel's force at full scale",
+                format.bound as f64 * step_n
+            );
+            return wrong(format.bits, &problem);
         }
     }
     Ok(())

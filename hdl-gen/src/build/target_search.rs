@@ -24,7 +24,10 @@ impl Plan {
     /// As [`Plan::new`], or if no number of lanes meets the target, or the plan is the paper's.
     pub fn meeting(design: &Design, target_us: f64) -> Result<Self, PlanError> {
         if design.algorithm.plan == PlanKind::Paper {
-            return Err(PlanError::TargetOfPaper { target_us });
+            return Err(PlanError::Key(format!(
+                "a target of {target_us} us: lanes are found for the reduced plan only; write plan = \"reduced\" under \
+                 [algorithm], or state [hardware] lanes and leave the target out"
+            )));
         }
         meet(&checked(design)?, design, target_us)
     }
@@ -33,7 +36,9 @@ impl Plan {
 /// What all plans of a design share, if its estimator and widths have hardware.
 fn checked(design: &Design) -> Result<SharedPlan, PlanError> {
     if !estimators::has_hardware(design) {
-        return Err(PlanError::JointEstimator);
+        let problem = "[algorithm] plan = \"paper\": the paper's plan has the line search only; write plan = \"reduced\", or \
+                       estimator = \"line\" and remove gain, friction_correction and correction";
+        return Err(PlanError::Key(problem.to_owned()));
     }
     check_widths(design)?;
     SharedPlan::new(design)

@@ -51,8 +51,7 @@ impl CalibrationPlan {
     /// The conversion, if the design's calibration is in RAM.
     ///
     /// # Errors
-    /// [`PlanError::BankOffset`] for an offset beyond what a bank takes; [`PlanError::Contact`] for a contact threshold;
-    /// those of [`CurveMap::new`].
+    /// [`PlanError::Key`] for an offset or a contact threshold beyond what a bank takes; those of [`CurveMap::new`].
     pub fn new(design: &Design, stress: Format, thresholds: &Thresholds) -> Result<Option<Self>, PlanError> {
         // Behind a curve a count is a pascal.
         let per_count = design.input.pa_per_count.or(design.input.curve.as_ref().map(|_| 1.0));
@@ -81,9 +80,13 @@ impl CalibrationPlan {
                 curve,
             },
         };
-        plan.power_up.contact = u32::try_from(thresholds.contact).map_err(|_| PlanError::Contact {
-            floor_pa: design.algorithm.noise_floor_pa,
-            most_pa: f64::from(u32::MAX) * stress.step() / plan.taxels as f64,
+        plan.power_up.contact = u32::try_from(thresholds.contact).map_err(|_| {
+            PlanError::Key(format!(
+                "[hardware] calibration = \"ram\": with [algorithm] noise_floor_pa = {} the threshold of contact has more than \
+                 32 bits; lower it to {:.0} or less, or write calibration = \"rom\"",
+                design.algorithm.noise_floor_pa,
+                f64::from(u32::MAX) * stress.step() / plan.taxels as f64
+            ))
         })?;
         let mut calibration = match &design.input.calibration {
             Some(calibration) => calibration.clone(),
@@ -93,10 +96,14 @@ impl CalibrationPlan {
         for &taxel in &design.input.dead {
             calibration.gain[taxel] = 0.0;
         }
-        plan.power_up = plan.bank(&calibration, &plan.power_up).map_err(|taxel| PlanError::BankOffset {
-            taxel,
-            counts: calibration.offset[taxel],
-            most: offset_limit as f64 / plan.count_steps.abs(),
+        plan.power_up = plan.bank(&calibration, &plan.power_up).map_err(|taxel| {
+            PlanError::Key(format!(
+                "[sensor] calibration: the offset of taxel {taxel} is {} counts; with [hardware] calibration = \"ram\" at most \
+                 {:.1} of either sign, two full scales, have room; correct the file, state a full_scale_pa that fits the \
+                 sensor, or write calibration = \"rom\"",
+                calibration.offset[taxel],
+                offset_limit as f64 / plan.count_steps.abs()
+            ))
         })?;
         Ok(Some(plan))
     }

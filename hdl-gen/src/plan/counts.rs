@@ -43,7 +43,7 @@ impl CountsPlan {
     ///
     /// # Errors
     /// [`PlanError::Offset`] when an offset is so far beyond the full scale that a step of the numbers that hold both
-    /// exceeds the noise; [`PlanError::Curve`] for a curve too steep.
+    /// exceeds the noise; [`PlanError::Key`] for a curve too steep.
     pub fn new(design: &Design, stress: Format) -> Result<Option<Self>, PlanError> {
         let Input { pa_per_count, ref curve, ref calibration, .. } = design.input;
         let curve = curve.as_ref().map(|curve| CurvePlan::new(design, curve)).transpose()?;

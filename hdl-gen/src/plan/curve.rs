@@ -51,7 +51,7 @@ impl CurvePlan {
     /// The curve of a design in the numbers of one in RAM, with coarser values where they reach further than those.
     ///
     /// # Errors
-    /// [`PlanError::Curve`] where it rises too steeply for that.
+    /// [`PlanError::Key`] where it rises too steeply for that.
     pub fn new(design: &Design, curve: &Curve) -> Result<Self, PlanError> {
         let format = CurveFormat::new(design, curve);
         let largest = curve.points.iter().fold(0.0_f64, |most, point| most.max(point[1].abs()));
@@ -62,7 +62,7 @@ impl CurvePlan {
     /// The curve in numbers whose steps are `2^count_lsb` counts and `2^value_lsb` Pa.
     ///
     /// # Errors
-    /// [`PlanError::Curve`] where it rises too steeply for that.
+    /// [`PlanError::Key`] where it rises too steeply for that.
     pub fn in_steps(curve: &Curve, count_lsb: i32, value_lsb: i32) -> Result<Self, PlanError> {
         let points: Vec<[i64; 2]> = curve
             .points
@@ -71,7 +71,13 @@ impl CurvePlan {
             .collect();
         let segment = |(pair, real): (&[[i64; 2]], &[[f64; 2]])| {
             let [[a, p], [b, q]] = [pair[0], pair[1]];
-            let steep = || PlanError::Curve { from: real[0][0], to: real[1][0] };
+            let steep = || {
+                PlanError::Key(format!(
+                    "[sensor] curve: between the counts {} and {} it rises so steeply that the hardware's numbers have no \
+                     step for it; move the points apart, or leave one out",
+                    real[0][0], real[1][0]
+                ))
+            };
             if a == b {
                 return Err(steep());
             }

@@ -57,7 +57,7 @@ impl QuantisedMatrix {
     /// or more.
     ///
     /// # Errors
-    /// [`PlanError::CoefficientWidth`] when the accumulator leaves the coefficients less than six bits.
+    /// [`PlanError::Key`] when the accumulator leaves the coefficients less than six bits.
     pub fn new(
         name: &str,
         matrix: &RealRows,
@@ -82,7 +82,10 @@ impl QuantisedMatrix {
             }
             lsb += 1;
             if (lsb - finest) as u32 + FEWEST_USEFUL_BITS > bits {
-                return Err(PlanError::CoefficientWidth { matrix: name.to_owned(), bits, needed: FEWEST_USEFUL_BITS });
+                return Err(PlanError::Key(format!(
+                    "[hardware] coefficient_bits = {bits}: matrix {name} keeps fewer than {FEWEST_USEFUL_BITS} bits beside a \
+                     48-bit accumulator; lower data_bits or filter more"
+                )));
             }
         }
     }

@@ -46,7 +46,6 @@ use creep::CreepPlan;
 use crosstalk::CrosstalkPlan;
 use dead::DeadPlan;
 pub use error::PlanError;
-pub(crate) use error::{FEWEST_FORCE_STEPS, MOST_ROUNDING};
 use layout::OperandLayout;
 use matrix::QuantisedMatrix;
 use product::Product;

@@ -29,7 +29,7 @@ impl CurveMap {
     /// A curve in numbers of a format.
     ///
     /// # Errors
-    /// [`PlanError::Curve`] where it rises too steeply, [`PlanError::CurveReach`] where its numbers have no room.
+    /// [`PlanError::Key`] where it rises too steeply, or where its numbers have no room.
     pub fn new(format: CurveFormat, curve: &Curve) -> Result<Self, PlanError> {
         let plan = CurvePlan::in_steps(curve, -format.exponent, format.lsb)?;
         let end = curve.points.last().map_or(0.0, |point| point[1]);
@@ -38,11 +38,14 @@ impl CurveMap {
         if map.fits() {
             return Ok(map);
         }
-        Err(PlanError::CurveReach {
-            pascals: MOST_VALUE as f64 * pow2(format.lsb),
-            counts: MOST_NUMBER as f64 * pow2(-format.exponent),
-            segments: format.room,
-        })
+        Err(PlanError::Key(format!(
+            "[sensor] curve: with [hardware] calibration = \"ram\" its values have room up to {:.0} Pa, eight full scales, its \
+             counts up to {:.0}, and it may have {} parts; leave out the points beyond, state a full_scale_pa that fits the \
+             sensor, or write calibration = \"rom\"",
+            MOST_VALUE as f64 * pow2(format.lsb),
+            MOST_NUMBER as f64 * pow2(-format.exponent),
+            format.room
+        )))
     }
 
     /// The words of a place: number, value, slope and shift; of one behind the last segment's what a bank takes.
