@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use crate::calibrate::recorded::{self, Measured};
 use crate::contacts::{ContactForces, MOST};
 use crate::frames::{self, FrameError, Numbers, Table};
-use crate::geometry::{self, GeometryError, OtherSensor};
+use crate::geometry::{self, GeometryError};
 use crate::metrics::Outcome;
 use crate::output;
 use crate::scene::SceneFrame;
@@ -319,12 +319,8 @@ fn no_forces(row: &[f64]) -> Option<String> {
 /// [`GeometryError`], as [`geometry::compare`].
 pub fn compare_sensor(reference: &Path, design_name: &str, design: &Sensor) -> Result<(), GeometryError> {
     // `frames.forces.csv` has its sensor beside `frames.csv`.
-    geometry::compare(&reference.with_extension(""), design_name, design).map_err(|error| match error {
-        GeometryError::Other(other) => {
-            GeometryError::Other(Box::new(OtherSensor { path: reference.to_path_buf(), ..*other }))
-        }
-        other => other,
-    })
+    let beside = geometry::beside(&reference.with_extension(""));
+    geometry::compare_beside(reference, &beside, design_name, design)
 }
 
 /// The place of the reference forces of a frame file: `frames.csv` has them in `frames.forces.csv`, `frames.npy` in

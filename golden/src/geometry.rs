@@ -16,43 +16,9 @@ pub enum GeometryError {
     /// The file beside the frames cannot be read, or holds no sensor.
     #[error(transparent)]
     File(#[from] DesignError),
-    /// Another sensor.
-    #[error(
-        "{}: the frames belong to {}, as {beside} says, and the design {} to {}; make frames for the design with \
-         `sptfra scene --design`, or remove {beside} if the frames are others",
-        .0.path.display(), .0.frames, .0.design_name, .0.design, beside = .0.beside.display()
-    )]
-    Other(Box<OtherSensor>),
-    /// A remark above the frames names another sensor.
-    #[error(
-        "{}, line {line}: the frames belong to {frames}, as this remark says, and the design to {design}; make frames for \
-         the design with `sptfra scene --design`, or leave the remark out if the frames are others", path.display()
-    )]
-    Remark {
-        /// The frames.
-        path: PathBuf,
-        /// Line of the remark, from 1.
-        line: usize,
-        /// Their sensor.
-        frames: Box<Sensor>,
-        /// The design's.
-        design: Box<Sensor>,
-    },
-}
-
-/// Frames and a design that do not belong together.
-#[derive(Debug)]
-pub struct OtherSensor {
-    /// The frames.
-    pub path: PathBuf,
-    /// The file beside them.
-    pub beside: PathBuf,
-    /// Their sensor.
-    pub frames: Sensor,
-    /// Name of the design.
-    pub design_name: String,
-    /// The design's sensor.
-    pub design: Sensor,
+    /// Another sensor: the file, both sensors and what to do.
+    #[error("{0}")]
+    Other(String),
 }
 
 /// The place of the sensor of a frame file: `frames.csv` has it in `frames.sensor.toml`.
@@ -90,8 +56,11 @@ pub fn compare_remark(remark: &[u8], path: &Path, line: usize, design: &Sensor) 
     if found == *design {
         return Ok(());
     }
-    let (frames, design) = (Box::new(found), Box::new(design.clone()));
-    Err(GeometryError::Remark { path: path.to_path_buf(), line, frames, design })
+    Err(GeometryError::Other(format!(
+        "{}, line {line}: the frames belong to {found}, as this remark says, and the design to {design}; make frames for the \
+         design with `sptfra scene --design`, or leave the remark out if the frames are others",
+        path.display()
+    )))
 }
 
 /// Compares the sensor of a frame file, if it is known, with a design's.
@@ -100,17 +69,30 @@ pub fn compare_remark(remark: &[u8], path: &Path, line: usize, design: &Sensor) 
 ///
 /// [`GeometryError`], with both sensors and what to do.
 pub fn compare(frames: &Path, design_name: &str, design: &Sensor) -> Result<(), GeometryError> {
-    let beside = beside(frames);
+    compare_beside(frames, &beside(frames), design_name, design)
+}
+
+/// The same of any file of these frames, which the message names, and the file of their sensor.
+pub(crate) fn compare_beside(
+    path: &Path,
+    beside: &Path,
+    design_name: &str,
+    design: &Sensor,
+) -> Result<(), GeometryError> {
     if !beside.is_file() {
         return Ok(());
     }
-    let text = std::fs::read_to_string(&beside).map_err(|source| DesignError::Read { path: beside.clone(), source })?;
-    let found = parse(&text, &beside.display().to_string())?;
+    let text =
+        std::fs::read_to_string(beside).map_err(|source| DesignError::Read { path: beside.to_path_buf(), source })?;
+    let (path, beside) = (path.display(), beside.display());
+    let found = parse(&text, &beside.to_string())?;
     if found == *design {
         return Ok(());
     }
-    let (path, design_name, design) = (frames.to_path_buf(), design_name.to_owned(), design.clone());
-    Err(GeometryError::Other(Box::new(OtherSensor { path, beside, frames: found, design_name, design })))
+    Err(GeometryError::Other(format!(
+        "{path}: the frames belong to {found}, as {beside} says, and the design {design_name} to {design}; make frames for \
+         the design with `sptfra scene --design`, or remove {beside} if the frames are others"
+    )))
 }
 
 fn parse(text: &str, origin: &str) -> Result<Sensor, DesignError> {

@@ -111,11 +111,10 @@ pub(super) fn correction(
         let problem = format!("is {shown:?}, but {} has {found}: it holds other weights", path.display());
         return Err(check.value(&format!("{KEY}.sha256"), problem, RESTORE));
     }
-    Correction::read_csv(&text, half_window).map_err(|error| DesignError::Table {
-        path,
-        line: error.line,
-        problem: error.problem,
-        remedy: error.remedy,
+    Correction::read_csv(&text, half_window).map_err(|(line, problem)| {
+        let remedy =
+            "take the file that was written with the design, or remove [algorithm.correction] and run `sptfra calibrate`";
+        DesignError::Table { path, line, problem, remedy: remedy.to_owned() }
     })
 }
 

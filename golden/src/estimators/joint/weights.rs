@@ -10,17 +10,6 @@ const EXTRA: [&str; EXTRA_INPUTS] = ["mu_x", "mu_y", "centre_x", "centre_y", "on
 /// The last columns: the hidden unit's weights in both components of the correction.
 const OUTPUT: [&str; 2] = ["to_x", "to_y"];
 
-/// What is wrong with a table of weights.
-#[derive(Debug, PartialEq, Eq)]
-pub(crate) struct WeightsError {
-    /// Line, from 1.
-    pub(crate) line: usize,
-    /// What is wrong.
-    pub(crate) problem: String,
-    /// What to do.
-    pub(crate) remedy: String,
-}
-
 /// The columns: places of the window, row by row, seen from the contact's centre; the other inputs; the outputs.
 fn header([half_x, half_y]: [usize; 2]) -> String {
     let steps = |half: usize| -(half as i64)..=half as i64;
@@ -45,23 +34,23 @@ impl Correction {
     }
 
     /// Reads what [`Correction::to_csv`] writes.
-    pub(crate) fn read_csv(text: &str, half_window: [usize; 2]) -> Result<Self, WeightsError> {
-        let wrong =
-            |line: usize, problem: String, remedy: &str| WeightsError { line, problem, remedy: remedy.to_owned() };
-        let again = "take the file that was written with the design, or remove [algorithm.correction] and run `sptfra calibrate`";
+    ///
+    /// # Errors
+    ///
+    /// The line, from 1, and what is wrong with it.
+    pub(crate) fn read_csv(text: &str, half_window: [usize; 2]) -> Result<Self, (usize, String)> {
         let mut lines = (1..).zip(text.lines());
         if lines.next().is_none_or(|(_, line)| line != header(half_window)) {
             let [x, y] = half_window;
-            let problem = format!("the header is not that of half_window = [{x}, {y}]");
-            return Err(wrong(1, problem, again));
+            return Err((1, format!("the header is not that of half_window = [{x}, {y}]")));
         }
         let (mut hidden, mut output) = (Vec::new(), [Vec::new(), Vec::new()]);
         let columns = Self::inputs(half_window) + OUTPUT.len();
         for (line, content) in lines {
-            let weights = content.split(',').map(|word| weight(word).map_err(|problem| wrong(line, problem, again)));
+            let weights = content.split(',').map(|word| weight(word).map_err(|problem| (line, problem)));
             let mut weights: Vec<i32> = weights.collect::<Result<_, _>>()?;
             if weights.len() != columns {
-                return Err(wrong(line, format!("{} weights in place of {columns}", weights.len()), again));
+                return Err((line, format!("{} weights in place of {columns}", weights.len())));
             }
             for (output, weight) in output.iter_mut().zip(weights.split_off(Self::inputs(half_window))) {
                 output.push(weight);
@@ -69,8 +58,7 @@ impl Correction {
             hidden.push(weights);
         }
         if !(1..=MAX_HIDDEN).contains(&hidden.len()) {
-            let problem = format!("{} hidden units, not 1 to {MAX_HIDDEN}", hidden.len());
-            return Err(wrong(hidden.len() + 1, problem, again));
+            return Err((hidden.len() + 1, format!("{} hidden units, not 1 to {MAX_HIDDEN}", hidden.len())));
         }
         Ok(Self { half_window, hidden, output })
     }
@@ -121,9 +109,8 @@ mod tests {
             (text.replace("131071", "131072"), [1, 0], 3, "131072 is no weight from -131072 to 131071"),
             (text.replace("-2,", "2.5,"), [1, 0], 2, "\"2.5\" is no whole number"),
         ] {
-            let error = Correction::read_csv(&damaged, half_window).expect_err("it is damaged");
-            assert!(error.line == line && error.problem.contains(part), "{error:?}");
-            assert!(error.remedy.contains("sptfra calibrate"), "{error:?}");
+            let (found, problem) = Correction::read_csv(&damaged, half_window).expect_err("it is damaged");
+            assert!(found == line && problem.contains(part), "{found}: {problem}");
         }
     }
 }

@@ -60,7 +60,10 @@ fn weights_that_are_not_those_of_the_design() {
     // With the right hash of a wrong table, as somebody who edits both could have it.
     let wrong = weights.replace("131071", "131072");
     let error = Design::from_parts(&corrected(&keys(&wrong)), "pad.toml", &[("w.csv", wrong)]).unwrap_err().to_string();
-    assert!(["w.csv", "line 3", "131072", "131071"].iter().all(|part| error.contains(part)), "{error}");
+    assert!(
+        ["w.csv", "line 3", "131072", "131071", "sptfra calibrate"].iter().all(|part| error.contains(part)),
+        "{error}"
+    );
 }
 
 #[test]
