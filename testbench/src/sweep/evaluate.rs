@@ -1,5 +1,6 @@
 //! One point: its speed from the plan, its errors from the integer model, or from the RTL where that is asked for.
 
+use std::error::Error;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
@@ -43,10 +44,10 @@ pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Poin
     let frames = scene.frames.clone().as_delivered(design);
     let truth = frames.truth.clone().unwrap_or_default();
     let packets = packets(Streams::of(design), &frames.stress);
-    let refused = |source| SweepError::Solver { label: job.label(scene), source };
-    let solver = Solver::new(design).map_err(refused)?;
+    let at = |problem: Box<dyn Error + Send + Sync>| SweepError::at(job.label(scene), problem);
+    let solver = Solver::new(design).map_err(|error| at(error.into()))?;
     let received = packets.iter().map(|packet| as_received(Streams::of(design), packet));
-    let solutions = solver.solve_in_order(received).map_err(refused)?;
+    let solutions = solver.solve_in_order(received).map_err(|error| at(error.into()))?;
     let mut point = described(job, scene, &solver, &solutions, &truth);
     let plan = match Plan::new(design) {
         Ok(plan) => plan,
@@ -59,10 +60,9 @@ pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Poin
     point.verified = Verified::Model;
     if let Proof::Simulation(compiler) = proof {
         let turn = compiler.lock().unwrap_or_else(PoisonError::into_inner);
-        let verdict =
-            co_simulation.run().map_err(|error| SweepError::Run { label: job.label(scene), source: error.into() })?;
+        let verdict = co_simulation.run().map_err(|error| at(error.into()))?;
         drop(turn);
-        verdict.right().map_err(|fault| SweepError::NotExact { label: job.label(scene), fault: fault.into() })?;
+        verdict.right().map_err(|fault| at(format!("{fault}; please report this design").into()))?;
         point.verified = Verified::Rtl;
     }
     let answers: Vec<Answer> = co_simulation.expected.iter().filter_map(|words| decode(words)).collect();
@@ -76,7 +76,7 @@ pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Poin
     if let Proof::Report(path) = proof {
         RunReport::read(path)
             .and_then(|report| report.check(&plan, co_simulation.packets.len(), &point.errors, &point.status_counts))
-            .map_err(|problem| SweepError::Report { label: job.label(scene), path: path.clone(), problem })?;
+            .map_err(|problem| at(format!("{} {problem}; remove it, or run the point again", path.display()).into()))?;
         point.verified = Verified::Rtl;
     }
     let clock = design.hardware.clock_mhz;
@@ -139,9 +139,9 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 /// The answers of a design's integer model to frames in Pa, decoded; for pictures.
 ///
 /// # Errors
-/// [`SweepError::Run`] if the design has no plan.
+/// [`SweepError::At`] if the design has no plan.
 pub fn answers(design: &Design, frames: &FrameSet) -> Result<Vec<Answer>, SweepError> {
-    let plan = planned(design).map_err(|error| SweepError::Run { label: design.name.clone(), source: error.into() })?;
+    let plan = planned(design).map_err(|error| SweepError::at(&design.name, error))?;
     let packets = packets(plan.streams(), &frames.clone().as_delivered(design).stress);
     Ok(model_answers(&plan, &packets).iter().filter_map(|words| decode(words)).collect())
 }

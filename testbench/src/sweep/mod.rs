@@ -10,6 +10,7 @@ pub mod page;
 pub mod point;
 pub mod store;
 
+use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -17,12 +18,9 @@ use golden::design::{DesignError, Sensor};
 use golden::frames::FrameError;
 use golden::output::OutputError;
 use golden::scene::{Contact, Kind, Scene, SceneError, SceneFrame, Shear};
-use golden::solver::SolverError;
 use rayon::prelude::*;
 use serde::Deserialize;
-use thiserror::Error;
 
-use crate::co_simulation::{CoSimulationError, Fault};
 use crate::frame_set::FrameSet;
 use golden::progress::Progress;
 
@@ -32,19 +30,11 @@ use point::{Point, Verified};
 use store::Store;
 
 /// Why a sweep has no result.
-#[derive(Debug, Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum SweepError {
     /// A design or scene file is wrong.
     #[error(transparent)]
     Design(#[from] DesignError),
-    /// A scene cannot be computed.
-    #[error("{}: {source}", path.display())]
-    Scene {
-        /// The scene file.
-        path: PathBuf,
-        /// Why.
-        source: SceneError,
-    },
     /// The standing scene of a sensor cannot be computed.
     #[error(transparent)]
     StandingScene(#[from] SceneError),
@@ -63,40 +53,6 @@ pub enum SweepError {
          the reduced plan, and a design that has it); leave one of the options out"
     )]
     NoPoints,
-    /// The f64 solver refused a design.
-    #[error("{label}: {source}")]
-    Solver {
-        /// The point.
-        label: String,
-        /// Why.
-        source: SolverError,
-    },
-    /// The RTL could not be simulated.
-    #[error("{label}: {source}")]
-    Run {
-        /// The point.
-        label: String,
-        /// Why.
-        source: Box<CoSimulationError>,
-    },
-    /// The RTL is not the model.
-    #[error("{label}: {fault}; please report this design")]
-    NotExact {
-        /// The point.
-        label: String,
-        /// What differs.
-        fault: Box<Fault>,
-    },
-    /// A report that cannot be that of the point.
-    #[error("{label}: {} {problem}; remove it, or run the point again", path.display())]
-    Report {
-        /// The point.
-        label: String,
-        /// The report's file.
-        path: PathBuf,
-        /// What is wrong with it.
-        problem: String,
-    },
     /// Frames or forces cannot be written.
     #[error(transparent)]
     Frames(#[from] FrameError),
@@ -113,14 +69,20 @@ pub enum SweepError {
         /// Why not.
         source: std::io::Error,
     },
-    /// A value cannot be printed.
-    #[error("{}: {source}", path.display())]
-    Json {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        source: serde_json::Error,
+    /// What is wrong with a point, a scene or a file.
+    #[error("{label}: {source}")]
+    At {
+        /// Which.
+        label: String,
+        /// Why, and what to do.
+        source: Box<dyn Error + Send + Sync>,
     },
+}
+
+impl SweepError {
+    fn at(label: impl Into<String>, source: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
+        Self::At { label: label.into(), source: source.into() }
+    }
 }
 
 /// Friction of the contacts of kinds that have none of their own.
@@ -171,15 +133,14 @@ impl SweepScene {
     /// Reads a scene file and computes its frames.
     ///
     /// # Errors
-    /// [`SweepError::Scene`] with the file.
+    /// [`SweepError::At`] with the file.
     pub fn load(path: &Path) -> Result<Self, SweepError> {
-        let failed = |source| SweepError::Scene { path: path.to_owned(), source };
         let text =
             std::fs::read_to_string(path).map_err(|source| DesignError::Read { path: path.to_owned(), source })?;
         let origin = path.display().to_string();
         let scene = Scene::from_toml(&text, &origin)?;
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        Self::of(name, text, scene, origin).map_err(failed)
+        Self::of(name, text, scene, origin).map_err(|error| SweepError::at(path.display().to_string(), error))
     }
 
     /// The standing scene of a sensor.

@@ -50,14 +50,14 @@ impl Store {
     pub fn put(&self, point: &Point) -> Result<(), SweepError> {
         let path = self.path(&point.key);
         let text =
-            serde_json::to_string_pretty(point).map_err(|source| SweepError::Json { path: path.clone(), source })?;
+            serde_json::to_string_pretty(point).map_err(|error| SweepError::at(path.display().to_string(), error))?;
         Ok(write_whole(&path, (text + "\n").as_bytes())?)
     }
 
     /// Reads a point.
     ///
     /// # Errors
-    /// [`SweepError::Io`] and [`SweepError::Json`] with the file.
+    /// [`SweepError::Io`] and [`SweepError::At`] with the file.
     pub fn get(&self, key: &str) -> Result<Point, SweepError> {
         let path = self.path(key);
         let bytes = fs::read(&path).map_err(|source| SweepError::Io {
@@ -65,6 +65,6 @@ impl Store {
             path: path.clone(),
             source,
         })?;
-        serde_json::from_slice(&bytes).map_err(|source| SweepError::Json { path, source })
+        serde_json::from_slice(&bytes).map_err(|error| SweepError::at(path.display().to_string(), error))
     }
 }
