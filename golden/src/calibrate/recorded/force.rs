@@ -38,10 +38,11 @@ pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> 
     let wrong = |wrong| RecordedError::of(design, wrong);
     let is_sideways = sideways::is_all(measured);
     let follow = if is_sideways { Follow::Sideways(sideways::found(design, frames)?) } else { Follow::Forces };
-    let (frames, measured, mut remarks) = loads::pair(design, frames, measured, &follow).map_err(wrong)?;
+    let (paired, measured, mut remarks) = loads::pair(design, frames, measured, &follow).map_err(wrong)?;
+    let frames = &frames[paired.clone()];
     remarks.splice(0..0, measured.remarks.iter().cloned());
-    if is_sideways {
-        return sideways::fit(design, frames, measured, remarks);
+    if let Follow::Sideways(found) = follow {
+        return sideways::fit(design, (frames, &found[paired]), measured, remarks);
     }
     let mut holds = holds::part(design, frames, &measured).map_err(wrong)?;
     remarks.append(&mut holds.remarks);

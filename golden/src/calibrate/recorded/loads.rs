@@ -1,5 +1,7 @@
 //! What pressed in each frame, what the taxels read without load, and where the converter ends.
 
+use std::ops::Range;
+
 use super::lag::{self, Lags, Parts, Unclear};
 use super::table::{Measured, Pairing};
 use crate::design::Design;
@@ -14,8 +16,8 @@ const APART: [f64; 2] = [2.0, 16.0];
 /// What is wrong with a recording, and what to do.
 pub(super) type Wrong = (String, String);
 
-/// Frames, what was measured with each, and what is to be known of it.
-pub(super) type Pairs<'a> = (&'a [Vec<f64>], Measured, Vec<String>);
+/// Which frames have a counterpart, what was measured with each, and what is to be known of it.
+pub(super) type Pairs = (Range<usize>, Measured, Vec<String>);
 
 /// What the frames are compared with to pair them.
 pub(super) enum Follow {
@@ -23,8 +25,8 @@ pub(super) enum Follow {
     Forces,
     /// Their sum with the pressures.
     Pressures,
-    /// What the design finds along x and y, with what was measured.
-    Sideways(Vec<[f64; 2]>),
+    /// The forces that the design finds along x and y, with those that were measured.
+    Sideways(Vec<[f64; 3]>),
 }
 
 impl Follow {
@@ -112,12 +114,7 @@ fn lag_of(
 
 /// Frames and lines of the forces, or of a bladder's pressures, one for one. Where they do not begin together, the lag is
 /// found.
-pub(super) fn pair<'a>(
-    design: &Design,
-    frames: &'a [Vec<f64>],
-    measured: &Measured,
-    follow: &Follow,
-) -> Result<Pairs<'a>, Wrong> {
+pub(super) fn pair(design: &Design, frames: &[Vec<f64>], measured: &Measured, follow: &Follow) -> Result<Pairs, Wrong> {
     let what = if matches!(follow, Follow::Pressures) { "pressures" } else { "forces" };
     let (count, lines) = (frames.len(), measured.forces.len());
     let apart = count.abs_diff(lines);
@@ -157,11 +154,11 @@ pub(super) fn pair<'a>(
         return lost(place + 1, lines as isize - count as isize);
     }
     let skip = |frames: isize| usize::try_from(frames).unwrap_or(0);
-    let (frames, from) = (&frames[skip(-lag)..], skip(lag));
-    let both = frames.len().min(lines - from);
-    let parts = Parts::of(&readings[skip(-lag)..][..both], &loads[from..][..both], sign);
+    let (first, from) = (skip(-lag), skip(lag));
+    let both = (count - first).min(lines - from);
+    let parts = Parts::of(&readings[first..][..both], &loads[from..][..both], sign);
     if let Some((place, count)) = parts.missing().filter(|_| !clock) {
-        return lost(skip(-lag) + place + 1, count);
+        return lost(first + place + 1, count);
     }
     if lag != 0 && parts.most_differ() {
         return Err(unclear(format!("{} fits best, but not most parts of the recording", together(lag))));
@@ -184,7 +181,7 @@ pub(super) fn pair<'a>(
     measured.forces = measured.forces.iter().skip(from).take(both).copied().collect();
     measured.pressures = measured.pressures.iter().skip(from).take(both).copied().collect();
     measured.contacts = measured.contacts.map(|names| names.into_iter().skip(from).take(both).collect());
-    Ok((&frames[..both], measured, remarks))
+    Ok((first..first + both, measured, remarks))
 }
 
 /// Which frame and line belong together.

@@ -22,12 +22,12 @@ pub(super) fn is_all(measured: &Measured) -> bool {
         && measured.forces.iter().any(|force| force[0].is_some() || force[1].is_some())
 }
 
-/// `F_x` and `F_y` that the design finds in frames.
+/// Forces that the design finds in frames.
 ///
 /// # Errors
 ///
 /// [`RecordedError::Recording`] for frames in which, by the design, nothing presses.
-pub(super) fn found(design: &Design, frames: &[Vec<f64>]) -> Result<Vec<[f64; 2]>, RecordedError> {
+pub(super) fn found(design: &Design, frames: &[Vec<f64>]) -> Result<Vec<[f64; 3]>, RecordedError> {
     let solver = Solver::new(design)?;
     let of = |frame: &Vec<f64>| -> Result<[f64; 3], RecordedError> {
         let solution = solver.solve(frame)?;
@@ -52,28 +52,23 @@ pub(super) fn found(design: &Design, frames: &[Vec<f64>]) -> Result<Vec<[f64; 2]
             ),
         ));
     }
-    Ok(found.into_iter().map(|[x, y, _]| [x, y]).collect())
+    Ok(found)
 }
 
-/// Fits the constants of friction; all else stays as the design has it.
+/// Fits the constants of friction; all else stays as the design has it. `found` are the forces that the design finds.
 pub(super) fn fit(
     design: &Design,
-    frames: &[Vec<f64>],
+    (frames, found): (&[Vec<f64>], &[[f64; 3]]),
     mut measured: Measured,
     mut remarks: Vec<String>,
 ) -> Result<Recorded, RecordedError> {
     let wrong = |wrong| RecordedError::of(design, wrong);
-    let solver = Solver::new(design)?;
-    let mut found = Vec::with_capacity(frames.len());
-    for frame in frames {
-        let solution = solver.solve(frame)?;
-        found.push(if solution.status.contains(Status::NO_CONTACT) { 0.0 } else { solution.resultant[2] });
-    }
+    let normal = |k: usize| found[k][2];
     let known = |k: &usize| measured.forces[*k][0].is_some() || measured.forces[*k][1].is_some();
     let known: Vec<usize> = (0..frames.len()).filter(known).collect();
-    let largest = known.iter().fold(0.0_f64, |most, &k| most.max(found[k].abs()));
+    let largest = known.iter().fold(0.0_f64, |most, &k| most.max(normal(k).abs()));
     for &k in &known {
-        measured.forces[k][2] = Some(if found[k].abs() > REST * largest { found[k] } else { 0.0 });
+        measured.forces[k][2] = Some(if normal(k).abs() > REST * largest { normal(k) } else { 0.0 });
     }
     let mut holds = holds::part(design, frames, &measured).map_err(wrong)?;
     remarks.append(&mut holds.remarks);

@@ -34,8 +34,9 @@ const BORDER: f64 = 0.1;
 /// [`RecordedError::Recording`] for pressures that do not belong to the frames, or too many taxels that read nothing.
 pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> Result<Recorded, RecordedError> {
     let wrong = |wrong| RecordedError::of(design, wrong);
-    let (frames, measured, mut remarks) =
+    let (paired, measured, mut remarks) =
         loads::pair(design, frames, measured, &loads::Follow::Pressures).map_err(wrong)?;
+    let frames = &frames[paired];
     remarks.splice(0..0, measured.remarks.iter().cloned());
     // With crosstalk a taxel under the pressure of all reads so many times that.
     let reads = design.crosstalk().map_or(1.0, |crosstalk| crosstalk.under_uniform_pressure());
