@@ -1,7 +1,5 @@
 //! The register bank `sptfra_registers`: what it says of a design.
 
-use serde::{Serialize, Serializer};
-
 use crate::parameters::Base;
 use crate::parameters::Parameters;
 use crate::plan::Plan;
@@ -69,10 +67,9 @@ impl Constants {
             all.digits(name, *bits, *base, digits.clone())
         })
     }
-}
 
-impl Serialize for Constants {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|constant| (constant.name.to_lowercase(), &constant.digits)))
+    /// Their names in small letters, and their digits.
+    pub fn digits(&self) -> impl Iterator<Item = (String, &str)> {
+        self.0.iter().map(|constant| (constant.name.to_lowercase(), constant.digits.as_str()))
     }
 }

@@ -4,15 +4,14 @@
 
 use golden::design::Design;
 use serde::Serialize;
-use tera::{Context, Tera};
+use tera::context;
 
 use crate::plan::Plan;
 use crate::plan::streams::WORD_BITS;
-use crate::resources::BlockResources;
 
 use super::boards::Board;
 use super::registers::core_module;
-use super::{EmitError, FileMap, VERSION, debug};
+use super::{EmitError, FileMap, VERSION, debug, template};
 
 /// Bytes of a word of memory.
 const WORD_BYTES: usize = WORD_BITS / 8;
@@ -57,124 +56,73 @@ impl Placed {
     }
 }
 
-/// The data of the templates.
-#[derive(Serialize)]
-struct View {
-    name: String,
-    version: &'static str,
-    hash: String,
-    columns: usize,
-    rows: usize,
-    part: String,
-    /// `part` as one word of Tcl.
-    tcl_part: String,
-    /// `part` as a YAML string.
-    yaml_part: String,
-    clock_mhz: f64,
-    /// Nanoseconds with three decimals, Vivado's resolution.
-    period_ns: String,
-    /// Under which tools list the core.
-    vendor: String,
-    library: String,
-    ip_version: String,
-    /// Revision of the packaged IP.
-    revision: u32,
-    /// Bits of a beat on both streams.
-    stream_bits: usize,
-    bytes_in: usize,
-    bytes_out: usize,
-    /// Width of the DMA's length register.
-    length_bits: u32,
-    /// Names of the files in `rtl/` and `rom/`.
-    rtl: Vec<String>,
-    rom: Vec<String>,
-    /// Path of the self-checking testbench and names of its data files in `sim/`.
-    testbench: Option<String>,
-    sim_data: Vec<String>,
-    /// What the part's multipliers are called.
-    dsp_block: &'static str,
-    /// Predicted multipliers and block memories.
-    blocks: Vec<BlockResources>,
-    /// Whether there is a register bank.
-    control: bool,
-    /// Nets that a logic analyser is for, where the design marks them.
-    debug: Option<Vec<&'static str>>,
-    /// Its samples.
-    samples: u64,
-    boards: Vec<Placed>,
-}
-
 /// Vendor, library and version, which a checked design has.
 pub(super) fn vlnv(design: &Design) -> [String; 3] {
     design.hardware.vendor_library_version().map(|words| words.map(str::to_owned)).unwrap_or_default()
 }
 
-impl View {
-    fn new(plan: &Plan, hash: &str, (boards, debug): (&[Board], bool), files: &FileMap) -> Self {
-        let design = &plan.design;
-        let testbench = format!("sim/{}_tb.v", design.name);
-        let core = files.get(&format!("rtl/{}.v", core_module(plan)));
-        let core = core.map_or_else(String::new, |text| String::from_utf8_lossy(text).into_owned());
-        let streams = plan.streams();
-        let bytes_in = streams.words_in() * WORD_BYTES;
-        let bytes_out = streams.words_out * WORD_BYTES;
-        let [vendor, library, ip_version] = vlnv(design);
-        Self {
-            version: VERSION,
-            hash: hash.to_owned(),
-            columns: design.sensor.columns,
-            rows: design.sensor.rows,
-            part: design.hardware.part.clone(),
-            // Neither braces nor quotes nor backslashes are legal in a part's name.
-            tcl_part: format!("{{{}}}", design.hardware.part),
-            yaml_part: format!("\"{}\"", design.hardware.part),
-            clock_mhz: design.hardware.clock_mhz,
-            period_ns: period_ns(design.hardware.clock_mhz),
-            vendor,
-            library,
-            ip_version,
-            revision: revision(hash),
-            stream_bits: streams.bits,
-            bytes_in,
-            bytes_out,
-            length_bits: length_bits(bytes_in, bytes_out),
-            rtl: names(files, "rtl/", ".v"),
-            rom: names(files, "rom/", ".mem"),
-            sim_data: names(files, "sim/", ".mem"),
-            testbench: files.contains_key(&testbench).then_some(testbench),
-            dsp_block: plan.resources.dsp_block.name(),
-            blocks: plan.resources.blocks.clone(),
-            control: design.hardware.control,
-            debug: debug.then(|| debug::nets(&core, debug::always_zero(plan))),
-            samples: debug::samples(plan.timeline.latency_cycles),
-            boards: boards.iter().map(Placed::new).collect(),
-            name: design.name.clone(),
-        }
-    }
-}
-
 /// Adds the scripts and lists; `files` holds what they name.
 ///
 /// # Errors
-/// [`EmitError::Template`] if a template does not fit the view.
+/// [`EmitError::Template`] if a template does not fit its data.
 pub fn insert(
     plan: &Plan,
     hash: &str,
     (boards, debug): (&[Board], bool),
     files: &mut FileMap,
 ) -> Result<(), EmitError> {
-    let view = View::new(plan, hash, (boards, debug), files);
-    let failed = |path: &str| {
-        let template = path.to_owned();
-        move |source| EmitError::Template { template, source }
+    let (design, hardware) = (&plan.design, &plan.design.hardware);
+    let testbench = Some(format!("sim/{}_tb.v", design.name)).filter(|path| files.contains_key(path));
+    let core = files.get(&format!("rtl/{}.v", core_module(plan)));
+    let core = core.map_or_else(String::new, |text| String::from_utf8_lossy(text).into_owned());
+    let streams = plan.streams();
+    let bytes_in = streams.words_in() * WORD_BYTES;
+    let bytes_out = streams.words_out * WORD_BYTES;
+    let [vendor, library, ip_version] = vlnv(design);
+    let context = context! {
+        name => &design.name,
+        version => VERSION,
+        hash => hash,
+        columns => &design.sensor.columns,
+        rows => &design.sensor.rows,
+        part => &hardware.part,
+        // As a word of Tcl and as a YAML string: neither braces nor quotes nor backslashes are legal in a part's name.
+        tcl_part => &format!("{{{}}}", hardware.part),
+        yaml_part => &format!("\"{}\"", hardware.part),
+        clock_mhz => &hardware.clock_mhz,
+        // Nanoseconds with three decimals, Vivado's resolution.
+        period_ns => &period_ns(hardware.clock_mhz),
+        // Under which tools list the core.
+        vendor,
+        library,
+        ip_version,
+        revision => &revision(hash),
+        // Bits of a beat on both streams.
+        stream_bits => &streams.bits,
+        bytes_in,
+        bytes_out,
+        length_bits => &length_bits(bytes_in, bytes_out),
+        rtl => &names(files, "rtl/", ".v"),
+        rom => &names(files, "rom/", ".mem"),
+        // Path of the self-checking testbench and names of its data files in `sim/`.
+        testbench,
+        sim_data => &names(files, "sim/", ".mem"),
+        dsp_block => plan.resources.dsp_block.name(),
+        // Predicted multipliers and block memories.
+        blocks => &plan.resources.blocks,
+        // Whether there is a register bank.
+        control => &hardware.control,
+        // Nets that a logic analyser is for, where the design marks them, and its samples.
+        debug => &debug.then(|| debug::nets(&core, debug::always_zero(plan))),
+        samples => &debug::samples(plan.timeline.latency_cycles),
+        boards => &boards.iter().map(Placed::new).collect::<Vec<_>>(),
     };
-    let context = Context::from_serialize(&view).map_err(failed("view"))?;
     for (path, template) in FILES {
-        if (path == SIMULATION && view.testbench.is_none()) || (path == ANALYSER && view.debug.is_none()) {
+        if (path == SIMULATION && testbench.is_none()) || (path == ANALYSER && !debug) {
             continue;
         }
-        let text = Tera::one_off(template, &context, false).map_err(failed(path))?;
-        files.insert(path.replace("NAME", &view.name), text.into_bytes());
+        let text = template::one(path, template, &context)?;
+        files.insert(path.replace("NAME", &design.name), text.into_bytes());
     }
     Ok(())
 }

@@ -1,7 +1,6 @@
 //! Device-tree overlays: what Linux is to know of the block design of `vivado/`.
 
-use serde::Serialize;
-use tera::Context;
+use tera::context;
 
 use crate::plan::Plan;
 use crate::plan::streams::WORD_BITS;
@@ -15,23 +14,6 @@ const LINE: usize = 64;
 const FRAMES: usize = 32;
 /// The buffer is a multiple of so many bytes.
 const BUFFER_UNIT: usize = 0x1_0000;
-
-/// The data of the template. Addresses are hexadecimal, interrupts are numbers of shared peripherals.
-#[derive(Serialize)]
-struct View<'a> {
-    name: &'a str,
-    board: &'a str,
-    title: &'a str,
-    zynq_ultra: bool,
-    clock_hz: u64,
-    dma_address: String,
-    core_address: String,
-    dma_interrupt: u32,
-    core_interrupt: u32,
-    control: bool,
-    frames: usize,
-    buffer_bytes: String,
-}
 
 /// Interrupts of forces received and of the core, as the interrupt controller numbers those of the fabric: the Zynq
 /// UltraScale+ has 89 to 96 for `pl_ps_irq0` and 104 to 111 for `pl_ps_irq1` (UG1085), the Zynq-7000 29 and on for
@@ -54,28 +36,27 @@ fn buffer_bytes(plan: &Plan) -> usize {
 /// Adds an overlay for each board with the design's device.
 ///
 /// # Errors
-/// [`EmitError::Template`] if the template does not fit the view.
+/// [`EmitError::Template`] if the template does not fit its data.
 pub fn insert(plan: &Plan, boards: &[Board], files: &mut FileMap) -> Result<(), EmitError> {
     let (design, hardware) = (&plan.design, &plan.design.hardware);
     for board in boards.iter().filter(|board| board.has(&hardware.part)) {
         let (dma_interrupt, core_interrupt) = interrupts(board.processor, hardware.control);
-        let view = View {
-            name: &design.name,
-            board: &board.name,
-            title: &board.title,
-            zynq_ultra: board.processor == Processor::ZynqUltraPsE,
-            clock_hz: (hardware.clock_mhz * 1e6).round() as u64,
-            dma_address: format!("{:x}", board.registers),
-            core_address: format!("{:x}", board.core_registers()),
+        // Addresses are hexadecimal, interrupts are numbers of shared peripherals.
+        let context = context! {
+            name => &design.name,
+            board => &board.name,
+            title => &board.title,
+            zynq_ultra => &(board.processor == Processor::ZynqUltraPsE),
+            clock_hz => &((hardware.clock_mhz * 1e6).round() as u64),
+            dma_address => &format!("{:x}", board.registers),
+            core_address => &format!("{:x}", board.core_registers()),
             dma_interrupt,
             core_interrupt,
-            control: hardware.control,
-            frames: FRAMES,
-            buffer_bytes: format!("{:x}", buffer_bytes(plan)),
+            control => &hardware.control,
+            frames => &FRAMES,
+            buffer_bytes => &format!("{:x}", buffer_bytes(plan)),
         };
         let path = format!("linux/{}_{}.dtso", design.name, board.name);
-        let failed = |source| EmitError::Template { template: path.clone(), source };
-        let context = Context::from_serialize(&view).map_err(failed)?;
         let text = template::one(&path, include_str!("../../templates/linux/overlay.dtso.tera"), &context)?;
         files.insert(path, text.into_bytes());
     }

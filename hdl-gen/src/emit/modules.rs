@@ -10,7 +10,7 @@ use super::{registers, rtl, top};
 /// library.
 ///
 /// # Errors
-/// [`EmitError::Template`] if a template does not fit its view.
+/// [`EmitError::Template`] if a template does not fit its data.
 pub fn render(plan: &Plan, hash: &str, debug: bool) -> Result<Vec<(String, String)>, EmitError> {
     let mut modules = vec![top::render(plan, debug)?];
     modules.extend(registers::render(plan, hash)?);

@@ -1,7 +1,8 @@
 //! The register bank on AXI4-Lite around a core: its Verilog, and its map in `SystemRDL`.
 
 use serde::Serialize;
-use tera::Context;
+use serde_json::{Value, json};
+use tera::{Context, context};
 
 use crate::blocks::calibration;
 use crate::blocks::registers::Constants;
@@ -54,106 +55,65 @@ struct AxiPort {
 }
 
 /// The data of the templates.
-#[derive(Serialize)]
-struct View<'a> {
-    name: &'a str,
-    #[serde(flatten)]
-    constants: Constants,
-    /// Digits of the hash, a register's each.
-    hash_high: &'a str,
-    hash_low: &'a str,
-    axi_ports: Vec<AxiPort>,
-    /// Bits and 32-bit words of a beat.
-    stream_bits: usize,
-    words: usize,
-    /// Whether frames that find no room are dropped.
-    overrun: bool,
-    /// The design's rate of averages; 0 where frames are not averaged.
-    smoothing: u32,
-    /// Parameters of the bank.
-    registers: String,
-    /// Of a calibration in RAM.
-    calibration: Option<CalibrationView>,
+fn context(plan: &Plan, hash: &str) -> Context {
+    let port = |&(signal, output, bits): &(&'static str, bool, u32)| AxiPort {
+        signal,
+        bus: signal.to_uppercase(),
+        direction: if output { "output" } else { "input " },
+        range: format!("{:6}", if bits == 1 { String::new() } else { format!("[{}:0]", bits - 1) }),
+        used: !signal.ends_with("prot"),
+    };
+    let constants = Constants::new(plan, hash);
+    // Digits of the hash, a register's each.
+    let (hash_high, hash_low) = hash.split_at(8);
+    let mut context = context! {
+        name => &plan.design.name,
+        hash_high => hash_high,
+        hash_low => hash_low,
+        axi_ports => &AXI_SIGNALS.iter().map(port).collect::<Vec<_>>(),
+        // Bits and 32-bit words of a beat.
+        stream_bits => &plan.streams().bits,
+        words => &plan.streams().words(),
+        // Whether frames that find no room are dropped.
+        overrun => &plan.streams().drops,
+        // The design's rate of averages; 0 where frames are not averaged.
+        smoothing => &plan.smoothing.as_ref().map_or(0, |of| of.rate),
+        // Parameters of the bank.
+        registers => &verilog(&constants.parameters()),
+        calibration => &plan.calibration.as_ref().map(of_calibration),
+    };
+    for (name, digits) in constants.digits() {
+        context.insert(name, digits);
+    }
+    context
 }
 
 /// What the templates say of a calibration in RAM.
-#[derive(Serialize)]
-struct CalibrationView {
-    control: String,
-    registers: String,
-    /// Highest bits of a taxel's number and of an offset.
-    taxel_top: u32,
-    offset_top: u32,
-    /// Reset values of the map.
-    words: usize,
-    shift: u32,
-    lsb: u8,
-    offset_limit: i64,
-    steps_low: String,
-    steps_high: String,
-    first_word: String,
-    crc: String,
-    /// Dead taxels that a bank has room for.
-    replaceable: usize,
-    /// Whether banks have words behind the thresholds.
-    more: bool,
-    /// What `CALIBRATION_CURVE` says, where banks hold a curve.
-    curve: Option<[u8; 3]>,
-}
-
-impl CalibrationView {
-    fn new(of: &CalibrationPlan) -> Self {
-        let steps = of.count_steps.to_bits();
-        let first = of.power_up.gain_words().next().unwrap_or_default();
-        Self {
-            control: verilog(&calibration::control(of)),
-            registers: verilog(&calibration::registers(of)),
-            taxel_top: address_bits(of.taxels) - 1,
-            offset_top: of.offset_bits() - 1,
-            words: of.words(),
-            shift: of.shift,
-            lsb: calibration::lsb(of),
-            offset_limit: of.offset_limit,
-            steps_low: format!("{:08x}", steps as u32),
-            steps_high: format!("{:08x}", steps >> 32),
-            first_word: format!("{first:08x}"),
-            crc: format!("{:08x}", of.power_up.crc()),
-            replaceable: of.power_up.dead.room,
-            more: calibration::has_more(of),
-            curve: calibration::curve_register(of),
-        }
-    }
-}
-
-impl<'a> View<'a> {
-    fn new(plan: &'a Plan, hash: &'a str) -> Self {
-        let port = |&(signal, output, bits): &(&'static str, bool, u32)| AxiPort {
-            signal,
-            bus: signal.to_uppercase(),
-            direction: if output { "output" } else { "input " },
-            range: format!("{:6}", if bits == 1 { String::new() } else { format!("[{}:0]", bits - 1) }),
-            used: !signal.ends_with("prot"),
-        };
-        let constants = Constants::new(plan, hash);
-        let (hash_high, hash_low) = hash.split_at(8);
-        Self {
-            name: &plan.design.name,
-            hash_high,
-            hash_low,
-            axi_ports: AXI_SIGNALS.iter().map(port).collect(),
-            stream_bits: plan.streams().bits,
-            words: plan.streams().words(),
-            overrun: plan.streams().drops,
-            smoothing: plan.smoothing.as_ref().map_or(0, |of| of.rate),
-            registers: verilog(&constants.parameters()),
-            calibration: plan.calibration.as_ref().map(CalibrationView::new),
-            constants,
-        }
-    }
-
-    fn context(&self) -> Result<Context, EmitError> {
-        Context::from_serialize(self).map_err(|source| EmitError::Template { template: "registers".to_owned(), source })
-    }
+fn of_calibration(of: &CalibrationPlan) -> Value {
+    let steps = of.count_steps.to_bits();
+    let first = of.power_up.gain_words().next().unwrap_or_default();
+    json!({
+        "control": verilog(&calibration::control(of)),
+        "registers": verilog(&calibration::registers(of)),
+        // Highest bits of a taxel's number and of an offset.
+        "taxel_top": address_bits(of.taxels) - 1,
+        "offset_top": of.offset_bits() - 1,
+        // Reset values of the map.
+        "words": of.words(),
+        "shift": of.shift,
+        "lsb": calibration::lsb(of),
+        "offset_limit": of.offset_limit,
+        "steps_low": format!("{:08x}", steps as u32),
+        "steps_high": format!("{:08x}", steps >> 32),
+        "first_word": format!("{first:08x}"),
+        "crc": format!("{:08x}", of.power_up.crc()),
+        // Dead taxels that a bank has room for.
+        "replaceable": of.power_up.dead.room,
+        // Whether banks have words behind the thresholds.
+        "more": calibration::has_more(of),
+        // What `CALIBRATION_CURVE` says, where banks hold a curve.
+        "curve": calibration::curve_register(of),
+    })
 }
 
 /// Module of the core: the top itself, unless the register bank is around it.
@@ -165,24 +125,24 @@ pub(super) fn core_module(plan: &Plan) -> String {
 /// `(module, text)` of the top around the bank and the core; none without a bank.
 ///
 /// # Errors
-/// [`EmitError::Template`] if a template does not fit the view.
+/// [`EmitError::Template`] if the template does not fit its data.
 pub(super) fn render(plan: &Plan, hash: &str) -> Result<Vec<(String, String)>, EmitError> {
     if !plan.design.hardware.control {
         return Ok(Vec::new());
     }
     let module = plan.design.name.clone();
-    let text = design_module(&module, TOP, &View::new(plan, hash).context()?)?;
+    let text = design_module(&module, TOP, &context(plan, hash))?;
     Ok(vec![(module, text)])
 }
 
 /// Adds the register map, where there is a bank.
 ///
 /// # Errors
-/// [`EmitError::Template`] if the template does not fit the view.
+/// [`EmitError::Template`] if the template does not fit its data.
 pub(super) fn insert(plan: &Plan, hash: &str, files: &mut FileMap) -> Result<(), EmitError> {
     if plan.design.hardware.control {
         let path = map_path(plan);
-        let text = one(&path, MAP, &View::new(plan, hash).context()?)?;
+        let text = one(&path, MAP, &context(plan, hash))?;
         files.insert(path, text.into_bytes());
     }
     Ok(())

@@ -3,8 +3,7 @@
 use std::io::Write;
 
 use golden::scene::{Medium, Scene, SceneError};
-use serde::Serialize;
-use tera::Context;
+use tera::context;
 
 use crate::model::Model;
 use crate::plan::Plan;
@@ -22,40 +21,10 @@ const DIRECTIONS_DEG: [f64; 4] = [20.0, 110.0, 200.0, 290.0];
 /// Cycles that a core may take beyond its predicted ones, for the pauses of the streams.
 const SLACK_CYCLES: u64 = 10_000;
 
-/// The data of the template.
-#[derive(Serialize)]
-struct View<'a> {
-    name: &'a str,
-    frames: usize,
-    /// Bits and bytes of a beat.
-    stream_bits: usize,
-    stream_bytes: usize,
-    /// Beats of all frames.
-    beats_in: usize,
-    beats_out: usize,
-    /// Beats of an output frame.
-    beats: usize,
-    /// TKEEP of its last one.
-    last_keep: String,
-    /// Words of an output frame, and which has the timestamp.
-    words_out: usize,
-    timestamp: usize,
-    /// Which of the beats has it, and in which of its words.
-    timestamp_beat: usize,
-    timestamp_word: usize,
-    timeout: u64,
-    /// The same as time, in microseconds.
-    timeout_us: f64,
-    /// Whether it drops frames for which it has no room.
-    overrun: bool,
-    /// Whether the core has a register bank.
-    control: bool,
-}
-
 /// Adds `sim/NAME_tb.v`, `sim/NAME_cocotb.py`, `sim/NAME_stimulus.mem` and `sim/NAME_expected.mem`.
 ///
 /// # Errors
-/// [`EmitError::Template`] if the template does not fit the view; [`EmitError::Scene`] if no frames can be made for
+/// [`EmitError::Template`] if the template does not fit its data; [`EmitError::Scene`] if no frames can be made for
 /// the sensor.
 pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
     let name = plan.design.name.as_str();
@@ -63,29 +32,36 @@ pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
     let mut model = Model::new(plan);
     let answers: Vec<Vec<u32>> = packets.iter().map(|packet| model.process(packet)).collect();
     let words = plan.streams().words();
-    let beats = |packets: &[Vec<u32>]| packets.iter().map(|packet| packet.len().div_ceil(words)).sum();
+    let beats = |packets: &[Vec<u32>]| packets.iter().map(|packet| packet.len().div_ceil(words)).sum::<usize>();
     let timeout = SLACK_CYCLES + 4 * plan.timeline.latency_cycles * packets.len() as u64;
-    let view = View {
-        name,
-        frames: packets.len(),
-        stream_bits: plan.streams().bits,
-        stream_bytes: plan.streams().bits / 8,
-        beats_in: beats(&packets),
-        beats_out: beats(&answers),
-        beats: plan.streams().beats_out(),
-        last_keep: format!("{:x}", plan.streams().last_keep()),
-        words_out: plan.words_out(),
-        timestamp: TIMESTAMP,
-        timestamp_beat: TIMESTAMP / words,
-        timestamp_word: TIMESTAMP % words,
+    let context = context! {
+        name => name,
+        frames => &packets.len(),
+        // Bits and bytes of a beat.
+        stream_bits => &plan.streams().bits,
+        stream_bytes => &(plan.streams().bits / 8),
+        // Beats of all frames.
+        beats_in => &beats(&packets),
+        beats_out => &beats(&answers),
+        // Beats of an output frame.
+        beats => &plan.streams().beats_out(),
+        // TKEEP of its last one.
+        last_keep => &format!("{:x}", plan.streams().last_keep()),
+        // Words of an output frame, and which has the timestamp.
+        words_out => &plan.words_out(),
+        timestamp => &TIMESTAMP,
+        // Which of the beats has it, and in which of its words.
+        timestamp_beat => &(TIMESTAMP / words),
+        timestamp_word => &(TIMESTAMP % words),
         timeout,
-        timeout_us: timeout as f64 * COCOTB_CYCLE,
-        overrun: plan.streams().drops,
-        control: plan.design.hardware.control,
+        // The same as time, in microseconds.
+        timeout_us => &(timeout as f64 * COCOTB_CYCLE),
+        // Whether it drops frames for which it has no room.
+        overrun => &plan.streams().drops,
+        // Whether the core has a register bank.
+        control => &plan.design.hardware.control,
     };
     let module = format!("{name}_tb");
-    let context =
-        Context::from_serialize(&view).map_err(|source| EmitError::Template { template: module.clone(), source })?;
     let text = template::design_module(&module, TEMPLATE, &context)?;
     files.insert(format!("sim/{module}.v"), text.into_bytes());
     let module = format!("{name}_cocotb");

@@ -1,7 +1,6 @@
 //! The top of a design: its parameters and its wiring, around the modules of the library.
 
-use serde::Serialize;
-use tera::Context;
+use tera::{Context, context};
 
 use golden::design::{Filter, Samples};
 
@@ -28,185 +27,107 @@ const TEMPLATE: &str = concat!(
 );
 
 /// The data of the template. Widths end in `_width`.
-#[derive(Serialize)]
-#[allow(clippy::struct_excessive_bools, reason = "each is a question that the template asks")]
-struct View {
-    /// Whether a register bank is around the core, and then the core's own module.
-    control: bool,
-    core_module: String,
-    columns: usize,
-    rows: usize,
-    taxels: usize,
-    plan: &'static str,
-    estimator: &'static str,
-    filter: String,
-    counts: bool,
-    /// Whether gains and offsets stand in RAM; bits of a taxel's number and of an offset there.
-    calibration: bool,
-    taxel_width: u32,
-    offset_bits: u32,
-    /// Bits of what goes between the banks' control and what they say of dead taxels, there and back.
-    dead_command_bits: u32,
-    dead_result_bits: u32,
-    /// Of an ingress FIFO that drops frames, its parameters.
-    overrun: Option<String>,
-    /// Bits and bytes of a beat, 32-bit words of it, samples of it; bits of a sample and what it is.
-    stream_bits: usize,
-    stream_bytes: usize,
-    words: usize,
-    samples: usize,
-    sample_bits: usize,
-    sample: String,
-    beats_in: usize,
-    beats: usize,
-    /// TKEEP of the last beat out.
-    last_keep: String,
-    /// Whether samples go to Bz one by one, and what the stream is called that does.
-    unpack: bool,
-    samples_from: &'static str,
-    /// Whether each frame has a scale of its own.
-    scaled: bool,
-    context: String,
-    /// Thresholds of every frame, unless a calibration in RAM brings them: a taxel's noise, the least sum `|b|` of a contact.
-    noise: String,
-    contact: String,
-    /// Whether frames are averaged, and the rate, where no register has it.
-    averages: bool,
-    smoothing: String,
-    /// Dead taxels of the design.
-    dead: usize,
-    field: bool,
-    latency_cycles: u64,
-    latency_us: String,
-    interval_cycles: u64,
-    interval_us: String,
-    clock_mhz: f64,
-    issue_cycles: u64,
-    macs: u64,
-    busy_percent: String,
-    stress_lsb: i32,
-    weight_lsb: i32,
-    u_lsb: i32,
-    g_lsb: i32,
-    torque_lsb: i32,
-    /// Status bits with their meanings, two in a line.
-    status: Vec<String>,
+fn context(plan: &Plan) -> Context {
+    let (design, hardware) = (&plan.design, &plan.design.hardware);
+    let timeline = &plan.timeline;
+    let estimator_block = plan.estimator.block();
+    let folded = plan.channels() > 1;
+    let streams = plan.streams();
+    let unpack = streams.intake == Intake::Unpacked;
+    let [dead_command_bits, dead_result_bits] = plan.calibration.as_ref().map_or([0, 0], calibration::dead_bits);
+    let estimator = estimator_block.parameters(design, plan.channels());
+    let estimator = plan.thresholds.error.iter().fold(estimator, |parameters, error| error.parameters(parameters));
+    let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
+    context! {
+        // Whether a register bank is around the core, and then the core's own module.
+        control => &hardware.control,
+        core_module => &registers::core_module(plan),
+        columns => &design.sensor.columns,
+        rows => &design.sensor.rows,
+        taxels => &plan.taxels(),
+        plan => if folded { "reduced" } else { "paper's" },
+        estimator => if design.algorithm.estimator.is_calibrated() { "grid search" } else { "line search" },
+        filter => &filter_text(&design.algorithm.filter),
+        counts => &design.input.counts(),
+        // Whether gains and offsets stand in RAM; bits of a taxel's number and of an offset there.
+        calibration => &plan.calibration.is_some(),
+        taxel_width => &address_bits(plan.taxels()),
+        offset_bits => &plan.calibration.as_ref().map_or(0, CalibrationPlan::offset_bits),
+        // Bits of what goes between the banks' control and what they say of dead taxels, there and back.
+        dead_command_bits,
+        dead_result_bits,
+        // Of an ingress FIFO that drops frames, its parameters.
+        overrun => &streams.drops.then(|| verilog(&ingress_fifo::parameters(plan))),
+        // Bits and bytes of a beat, 32-bit words of it, samples of it; bits of a sample and what it is.
+        stream_bits => &streams.bits,
+        stream_bytes => &(streams.bits / 8),
+        words => &streams.words(),
+        samples => &streams.samples(),
+        sample_bits => &streams.sample_bits,
+        sample => &streams.sample.to_string(),
+        beats_in => &streams.beats_in(),
+        beats => &streams.beats_out(),
+        // TKEEP of the last beat out.
+        last_keep => &format!("{:x}", streams.last_keep()),
+        // Whether samples go to Bz one by one, and what the stream is called that does.
+        unpack,
+        samples_from => if unpack { "sample" } else { "in" },
+        // Whether each frame has a scale of its own.
+        scaled => &plan.scales_frames(),
+        context => &verilog(&frame_context::parameters(plan)),
+        // Thresholds of every frame, unless a calibration in RAM brings them: a taxel's noise, the least sum `|b|` of a
+        // contact.
+        noise => &format!("{LONG_BITS}'d{}", plan.thresholds.taxel),
+        contact => &format!("{SUM_BITS}'d{}", plan.thresholds.contact),
+        // Whether frames are averaged, and the rate, where no register has it.
+        averages => &plan.smoothing.is_some(),
+        smoothing => &match &plan.smoothing {
+            Some(_) if hardware.control => "smoothing".to_owned(),
+            of => format!("4'd{}", of.as_ref().map_or(0, |of| of.rate)),
+        },
+        // Dead taxels of the design.
+        dead => &plan.dead.as_ref().map_or(0, |dead| dead.taxels.len()),
+        field => &plan.has_field(),
+        latency_cycles => &timeline.latency_cycles,
+        latency_us => &microseconds(timeline.latency_cycles),
+        interval_cycles => &timeline.interval_cycles,
+        interval_us => &microseconds(timeline.interval_cycles),
+        clock_mhz => &hardware.clock_mhz,
+        issue_cycles => &plan.schedule.issue_cycles(),
+        macs => &plan.macs(),
+        busy_percent => &format!("{:.1}", 100.0 * plan.schedule.busy_fraction()),
+        stress_lsb => &plan.formats.stress.lsb,
+        weight_lsb => &plan.formats.weight.lsb,
+        u_lsb => &plan.formats.u.lsb,
+        g_lsb => &plan.formats.g.lsb,
+        torque_lsb => &plan.formats.torque_lsb,
+        // Status bits with their meanings, two in a line.
+        status => &status_lines(),
 
-    elements: usize,
-    channels: usize,
-    programs: usize,
-    row_width: u32,
-    operand_width: u32,
-    component_width: u32,
-    data_bits: u32,
-    vector_bits: usize,
-    u_values: String,
+        elements => &plan.elements(),
+        channels => &plan.channels(),
+        programs => &plan.schedule.programs.len(),
+        row_width => &row_width(plan),
+        operand_width => &address_bits(plan.operands.words()),
+        component_width => &address_bits(3 * plan.elements()),
+        data_bits => &hardware.data_bits,
+        vector_bits => &(plan.channels() * hardware.data_bits as usize),
+        u_values => &u_values(plan),
 
-    bz: String,
-    cean: String,
-    program_scheduler: String,
-    array: String,
-    unfold: String,
-    we: String,
-    co: String,
-    estimator_module: &'static str,
-    estimator_parameters: String,
-    field_module: &'static str,
-    field_parameters: String,
-    /// Of the contact counter, if there is one.
-    contacts: Option<String>,
-    op: String,
-}
-
-impl View {
-    fn new(plan: &Plan) -> Self {
-        let (design, hardware) = (&plan.design, &plan.design.hardware);
-        let timeline = &plan.timeline;
-        let estimator_block = plan.estimator.block();
-        let folded = plan.channels() > 1;
-        let streams = plan.streams();
-        let unpack = streams.intake == Intake::Unpacked;
-        let [dead_command_bits, dead_result_bits] = plan.calibration.as_ref().map_or([0, 0], calibration::dead_bits);
-        let estimator = estimator_block.parameters(design, plan.channels());
-        let estimator = plan.thresholds.error.iter().fold(estimator, |parameters, error| error.parameters(parameters));
-        let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
-        Self {
-            control: hardware.control,
-            core_module: registers::core_module(plan),
-            columns: design.sensor.columns,
-            rows: design.sensor.rows,
-            taxels: plan.taxels(),
-            plan: if folded { "reduced" } else { "paper's" },
-            estimator: if design.algorithm.estimator.is_calibrated() { "grid search" } else { "line search" },
-            filter: filter_text(&design.algorithm.filter),
-            counts: design.input.counts(),
-            calibration: plan.calibration.is_some(),
-            taxel_width: address_bits(plan.taxels()),
-            offset_bits: plan.calibration.as_ref().map_or(0, CalibrationPlan::offset_bits),
-            dead_command_bits,
-            dead_result_bits,
-            overrun: streams.drops.then(|| verilog(&ingress_fifo::parameters(plan))),
-            stream_bits: streams.bits,
-            stream_bytes: streams.bits / 8,
-            words: streams.words(),
-            samples: streams.samples(),
-            sample_bits: streams.sample_bits,
-            sample: streams.sample.to_string(),
-            beats_in: streams.beats_in(),
-            beats: streams.beats_out(),
-            last_keep: format!("{:x}", streams.last_keep()),
-            unpack,
-            samples_from: if unpack { "sample" } else { "in" },
-            scaled: plan.scales_frames(),
-            context: verilog(&frame_context::parameters(plan)),
-            noise: format!("{LONG_BITS}'d{}", plan.thresholds.taxel),
-            contact: format!("{SUM_BITS}'d{}", plan.thresholds.contact),
-            averages: plan.smoothing.is_some(),
-            smoothing: match &plan.smoothing {
-                Some(_) if hardware.control => "smoothing".to_owned(),
-                of => format!("4'd{}", of.as_ref().map_or(0, |of| of.rate)),
-            },
-            dead: plan.dead.as_ref().map_or(0, |dead| dead.taxels.len()),
-            field: plan.has_field(),
-            latency_cycles: timeline.latency_cycles,
-            latency_us: microseconds(timeline.latency_cycles),
-            interval_cycles: timeline.interval_cycles,
-            interval_us: microseconds(timeline.interval_cycles),
-            clock_mhz: hardware.clock_mhz,
-            issue_cycles: plan.schedule.issue_cycles(),
-            macs: plan.macs(),
-            busy_percent: format!("{:.1}", 100.0 * plan.schedule.busy_fraction()),
-            stress_lsb: plan.formats.stress.lsb,
-            weight_lsb: plan.formats.weight.lsb,
-            u_lsb: plan.formats.u.lsb,
-            g_lsb: plan.formats.g.lsb,
-            torque_lsb: plan.formats.torque_lsb,
-            status: status_lines(),
-
-            elements: plan.elements(),
-            channels: plan.channels(),
-            programs: plan.schedule.programs.len(),
-            row_width: row_width(plan),
-            operand_width: address_bits(plan.operands.words()),
-            component_width: address_bits(3 * plan.elements()),
-            data_bits: hardware.data_bits,
-            vector_bits: plan.channels() * hardware.data_bits as usize,
-            u_values: u_values(plan),
-
-            bz: verilog(&bz::parameters(plan)),
-            cean: verilog(&cean::parameters(plan)),
-            program_scheduler: verilog(&program_scheduler::parameters(plan)),
-            array: verilog(&array::parameters(plan)),
-            unfold: verilog(&unfold::parameters(plan)),
-            we: verilog(&we::parameters(plan)),
-            co: verilog(&co::parameters(plan)),
-            estimator_module: estimator_block.module(),
-            estimator_parameters: verilog(&estimator),
-            field_module: field::module(plan),
-            field_parameters: verilog(&field::parameters(plan)),
-            contacts: design.algorithm.count_contacts.then(|| verilog(&contacts::parameters(plan))),
-            op: verilog(&op::parameters(plan)),
-        }
+        bz => &verilog(&bz::parameters(plan)),
+        cean => &verilog(&cean::parameters(plan)),
+        program_scheduler => &verilog(&program_scheduler::parameters(plan)),
+        array => &verilog(&array::parameters(plan)),
+        unfold => &verilog(&unfold::parameters(plan)),
+        we => &verilog(&we::parameters(plan)),
+        co => &verilog(&co::parameters(plan)),
+        estimator_module => estimator_block.module(),
+        estimator_parameters => &verilog(&estimator),
+        field_module => field::module(plan),
+        field_parameters => &verilog(&field::parameters(plan)),
+        // Of the contact counter, if there is one.
+        contacts => &design.algorithm.count_contacts.then(|| verilog(&contacts::parameters(plan))),
+        op => &verilog(&op::parameters(plan)),
     }
 }
 
@@ -235,59 +156,36 @@ fn u_values(plan: &Plan) -> String {
 /// The module of the core and its text, with nets marked for a logic analyser if `debug`.
 ///
 /// # Errors
-/// [`EmitError::Template`] if the template does not fit the view.
+/// [`EmitError::Template`] if the template does not fit its data.
 pub(super) fn render(plan: &Plan, debug: bool) -> Result<(String, String), EmitError> {
-    let view = View::new(plan);
-    let context =
-        Context::from_serialize(&view).map_err(|source| EmitError::Template { template: "top".to_owned(), source })?;
-    let text = design_module(&view.core_module, TEMPLATE, &context)?;
+    let module = registers::core_module(plan);
+    let text = design_module(&module, TEMPLATE, &context(plan))?;
     let text = if debug { debug::marked(&text, debug::always_zero(plan)) } else { text };
-    Ok((view.core_module, text))
+    Ok((module, text))
 }
 
 /// Modules of the library that stand only in a `generate if` that neither the design takes nor the default parameters.
 pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
-    let mut without = plan.estimator.block().without();
-    if plan.thresholds.error.is_none() {
-        without.push("sptfra_standard_error");
-    }
     let curve = plan.design.input.curve.is_some();
-    if !plan.design.input.counts() {
-        without.push("sptfra_counts");
-    }
-    if !curve {
-        without.push("sptfra_curve");
-    }
-    if plan.streams().sample == Samples::Float32 {
-        without.push("sptfra_int_to_fixed");
-    }
-    if plan.calibration.is_none() {
-        without.extend(["sptfra_banks", "sptfra_curve_bank", "sptfra_tare"]);
-    } else if !curve {
-        without.push("sptfra_curve_bank");
-    }
-    if plan.crosstalk.is_none() {
-        without.push("sptfra_crosstalk");
-    }
-    if plan.creep.is_none() {
-        without.push("sptfra_creep");
-    }
-    if plan.smoothing.is_none() {
-        without.push("sptfra_smoothing");
-    }
-    if !plan.scales_frames() {
-        without.push("sptfra_frame_scale");
-    }
-    if plan.places_for_dead() == 0 {
-        without.push("sptfra_replace");
-    }
-    if plan.calibration.as_ref().is_none_or(|of| of.power_up.dead.room == 0) {
-        without.push("sptfra_dead_bank");
-    }
-    if plan.channels() > 1 {
-        without.push("sptfra_coefficients");
-    }
-    without
+    let calibration = plan.calibration.as_ref();
+    let taken: [(bool, &str); 14] = [
+        (plan.thresholds.error.is_some(), "sptfra_standard_error"),
+        (plan.design.input.counts(), "sptfra_counts"),
+        (curve, "sptfra_curve"),
+        (plan.streams().sample != Samples::Float32, "sptfra_int_to_fixed"),
+        (calibration.is_some(), "sptfra_banks"),
+        (calibration.is_some(), "sptfra_tare"),
+        (calibration.is_some() && curve, "sptfra_curve_bank"),
+        (plan.crosstalk.is_some(), "sptfra_crosstalk"),
+        (plan.creep.is_some(), "sptfra_creep"),
+        (plan.smoothing.is_some(), "sptfra_smoothing"),
+        (plan.scales_frames(), "sptfra_frame_scale"),
+        (plan.places_for_dead() > 0, "sptfra_replace"),
+        (calibration.is_some_and(|of| of.power_up.dead.room > 0), "sptfra_dead_bank"),
+        (plan.channels() == 1, "sptfra_coefficients"),
+    ];
+    let missing = taken.into_iter().filter(|&(taken, _)| !taken).map(|(_, module)| module);
+    plan.estimator.block().without().into_iter().chain(missing).collect()
 }
 
 fn filter_text(filter: &Filter) -> String {
