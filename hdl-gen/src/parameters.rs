@@ -160,6 +160,21 @@ impl Parameters {
         self.with(name, Value::Outer)
     }
 
+    /// Also those of `of`, if there is one.
+    #[must_use]
+    pub fn some<T>(self, of: Option<T>, parameters: impl FnOnce(Self, T) -> Self) -> Self {
+        match of {
+            Some(of) => parameters(self, of),
+            None => self,
+        }
+    }
+
+    /// Also others on a condition.
+    #[must_use]
+    pub fn when(self, condition: bool, parameters: impl FnOnce(Self) -> Self) -> Self {
+        if condition { parameters(self) } else { self }
+    }
+
     fn with(mut self, name: &'static str, value: Value) -> Self {
         self.0.push((name, value));
         self

@@ -41,9 +41,8 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .count("OPERAND_DEPTH", plan.operands.words())
         .count("SLOT_DEPTH", schedule.slots.len())
         .count("MIRROR_SIDE", mirror_side(plan));
-    let parameters = programs(plan, products(plan, parameters));
-    let parameters = if schedule.ahead { parameters.flag("AHEAD", true) } else { parameters };
-    parameters
+    programs(plan, products(plan, parameters))
+        .when(schedule.ahead, |all| all.flag("AHEAD", true))
         .number("DESTINATION_BITS", destination_bits(plan.has_field()).into())
         .table("SHIFTS", 6, shifts(plan))
         .outer("ROM_DIR")

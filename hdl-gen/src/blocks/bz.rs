@@ -2,6 +2,7 @@
 
 use golden::design::Samples;
 
+use super::registers::samples;
 use crate::cores::{ACCUMULATOR_BITS, LONG_BITS};
 use crate::format::address_bits;
 use crate::parameters::Parameters;
@@ -39,55 +40,29 @@ pub fn parameters(plan: &Plan) -> Parameters {
     };
     let counts = plan.counts.is_some() || plan.calibration.is_some();
     let bound = if counts { curve.map_or(LARGEST_NUMBER, CurvePlan::reach) } else { stress.bound };
-    let parameters = Parameters::new()
+    let in_rom = plan.counts.is_some() || plan.dead.is_some() || plan.calibration.is_some();
+    Parameters::new()
         .count("COLUMNS", plan.design.sensor.columns)
         .count("ROWS", plan.design.sensor.rows)
         .count("SAMPLES", streams.conversions())
         .count("CHANNELS", plan.channels())
         .number("DATA_BITS", plan.design.hardware.data_bits.into())
-        .flag("SCALED", plan.scales_frames());
-    // As in sptfra_samples.
-    let parameters = match streams.sample {
-        Samples::Float32 => parameters,
-        Samples::Int16 => parameters.number("SAMPLE", 1),
-        Samples::Uint16 => parameters.number("SAMPLE", 2),
-    };
-    let parameters = parameters.number("NUMBER_SHIFT", shift.into()).signed("NUMBER_BOUND", LONG_BITS, bound);
-    let parameters = match &plan.counts {
-        Some(counts) => of_counts(parameters, counts),
-        None => parameters,
-    };
-    let parameters = match curve {
-        Some(curve) => of_curve(parameters, curve),
-        None => parameters,
-    };
-    let parameters = match &plan.dead {
-        Some(dead) => of_dead(parameters.count("REPLACEABLE", dead.taxels.len()), dead, dead.taxels.len()),
-        None => parameters,
-    };
-    let parameters = match &plan.crosstalk {
-        Some(of) => parameters.unsigned("CROSSTALK", crosstalk::PARAMETER_BITS, of.bits()),
-        None => parameters,
-    };
-    let parameters = match &plan.creep {
-        Some(of) => parameters.unsigned("CREEP", creep::PARAMETER_BITS, of.bits()),
-        None => parameters,
-    };
-    let parameters = match &plan.smoothing {
-        Some(of) => parameters.unsigned("SMOOTHING", WITH_FRACTION, of.restart.bits()),
-        None => parameters,
-    };
-    let parameters = match &plan.calibration {
-        Some(of) => of_calibration(parameters, of),
-        None => parameters,
-    };
-    let parameters = parameters.signed("STRESS_BOUND", LONG_BITS, stress.bound);
-    let parameters = if plan.counts.is_none() && plan.dead.is_none() && plan.calibration.is_none() {
-        parameters
-    } else {
-        parameters.outer("ROM_DIR").text("ROM_NAME", &plan.design.name)
-    };
-    parameters.cycles("EXPECTED_STAGES", beat_to_stress(plan))
+        .flag("SCALED", plan.scales_frames())
+        .when(streams.sample != Samples::Float32, |all| all.number("SAMPLE", samples(plan).into()))
+        .number("NUMBER_SHIFT", shift.into())
+        .signed("NUMBER_BOUND", LONG_BITS, bound)
+        .some(plan.counts.as_ref(), of_counts)
+        .some(curve, of_curve)
+        .some(plan.dead.as_ref(), |all, dead| {
+            of_dead(all.count("REPLACEABLE", dead.taxels.len()), dead, dead.taxels.len())
+        })
+        .some(plan.crosstalk.as_ref(), |all, of| all.unsigned("CROSSTALK", crosstalk::PARAMETER_BITS, of.bits()))
+        .some(plan.creep.as_ref(), |all, of| all.unsigned("CREEP", creep::PARAMETER_BITS, of.bits()))
+        .some(plan.smoothing.as_ref(), |all, of| all.unsigned("SMOOTHING", WITH_FRACTION, of.restart.bits()))
+        .some(plan.calibration.as_ref(), of_calibration)
+        .signed("STRESS_BOUND", LONG_BITS, stress.bound)
+        .when(in_rom, |all| all.outer("ROM_DIR").text("ROM_NAME", &plan.design.name))
+        .cycles("EXPECTED_STAGES", beat_to_stress(plan))
 }
 
 /// Cycles from a beat to its stress.
@@ -213,22 +188,16 @@ fn of_curve(parameters: Parameters, curve: &CurvePlan) -> Parameters {
 
 /// Of a calibration in RAM.
 fn of_calibration(parameters: Parameters, of: &CalibrationPlan) -> Parameters {
-    let parameters = parameters
+    let map = &of.power_up.dead;
+    parameters
         .flag("COUNTS", true)
         .flag("CALIBRATED", true)
         .flag("PER_TAXEL", true)
         .number("OFFSET_BITS", of.offset_bits().into())
         .number("COUNT_SHIFT", i64::from(of.shift) - of.curve().map_or(0, |curve| curve.lsb.into()))
-        .signed("FULL_SCALE", ACCUMULATOR_BITS, of.full_scale);
-    let parameters = match &of.power_up.curve {
-        Some(curve) => of_bank_curve(parameters, curve),
-        None => parameters,
-    };
-    let map = &of.power_up.dead;
-    if map.room == 0 {
-        return parameters;
-    }
-    of_dead(parameters.count("REPLACEABLE", map.room).flag("MAPPED", true), &map.dead, map.room)
+        .signed("FULL_SCALE", ACCUMULATOR_BITS, of.full_scale)
+        .some(of.power_up.curve.as_ref(), of_bank_curve)
+        .when(map.room > 0, |all| of_dead(all.count("REPLACEABLE", map.room).flag("MAPPED", true), &map.dead, map.room))
 }
 
 fn of_bank_curve(parameters: Parameters, map: &CurveMap) -> Parameters {

@@ -26,18 +26,15 @@ pub fn dead_bits(of: &CalibrationPlan) -> [u32; 2] {
 
 /// Parameters of `sptfra_calibration`.
 pub fn control(of: &CalibrationPlan) -> Parameters {
-    let parameters = Parameters::new()
+    Parameters::new()
         .count("TAXELS", of.taxels)
         .number("OFFSET_BITS", of.offset_bits().into())
         .signed("OFFSET_LIMIT", 32, of.offset_limit)
         .unsigned("CONTACT", 32, of.power_up.contact.into())
         .unsigned("NOISE", LONG_BITS, of.power_up.noise.into())
         .pattern("CRC", 32, of.power_up.crc().into())
-        .count("REPLACEABLE", of.power_up.dead.room);
-    match of.curve() {
-        Some(curve) => parameters.count("CURVE_WORDS", curve.length()),
-        None => parameters,
-    }
+        .count("REPLACEABLE", of.power_up.dead.room)
+        .some(of.curve(), |all, curve| all.count("CURVE_WORDS", curve.length()))
 }
 
 /// What `CALIBRATION_CURVE` says: room for segments, the exponents of numbers and of a step of the values.
@@ -48,17 +45,16 @@ pub fn curve_register(of: &CalibrationPlan) -> Option<[u8; 3]> {
 
 /// Parameters of `sptfra_calibration_registers`.
 pub fn registers(of: &CalibrationPlan) -> Parameters {
-    let parameters = Parameters::new()
+    Parameters::new()
         .unsigned("WORDS", 16, of.words() as u64)
         .unsigned("SHIFT", 6, of.shift.into())
         .unsigned("LSB", 8, lsb(of).into())
         .unsigned("OFFSET_LIMIT", 32, of.offset_limit as u64)
         .pattern("COUNT_STEPS", 64, of.count_steps.to_bits())
-        .unsigned("REPLACEABLE", 4, of.power_up.dead.room as u64);
-    match curve_register(of) {
-        Some([room, exponent, lsb]) => parameters.list("CURVE", 8, [room, exponent, lsb, 0].map(u64::from)),
-        None => parameters,
-    }
+        .unsigned("REPLACEABLE", 4, of.power_up.dead.room as u64)
+        .some(curve_register(of), |all, [room, exponent, lsb]| {
+            all.list("CURVE", 8, [room, exponent, lsb, 0].map(u64::from))
+        })
 }
 
 /// The exponent of the stress' step as eight bits of two's complement.

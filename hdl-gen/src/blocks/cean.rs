@@ -11,13 +11,12 @@ pub fn parameters(plan: &Plan) -> Parameters {
     let estimator_block = plan.estimator.block();
     let pitch = estimator_block.pitch();
     let [pitch_x, pitch_y] = pitch.unwrap_or_default();
-    let parameters = Parameters::new()
+    Parameters::new()
         .count("COLUMNS", plan.design.sensor.columns)
         .count("ROWS", plan.design.sensor.rows)
         .flag("DIRECTION", pitch.is_some())
-        .flag("TENSION_READ", plan.design.input.tension == Tension::Read);
-    let parameters = if plan.thresholds.error.is_some() { parameters.flag("WITH_ERROR", true) } else { parameters };
-    parameters
+        .flag("TENSION_READ", plan.design.input.tension == Tension::Read)
+        .when(plan.thresholds.error.is_some(), |all| all.flag("WITH_ERROR", true))
         .signed("PITCH_X", SHORT_BITS, pitch_x)
         .signed("PITCH_Y", SHORT_BITS, pitch_y)
         .cycles("EXPECTED_LATENCY", estimator_block.contact_latency())

@@ -21,18 +21,15 @@ pub fn parameters(plan: &Plan) -> Parameters {
     let mut in_bank: Vec<bool> = stored.iter().map(|&vector| place(plan, vector).1).collect();
     bases.resize(folded.len(), (0, String::new()));
     in_bank.resize(folded.len(), false);
-    let parameters = Parameters::new()
+    Parameters::new()
         .count("CHANNELS", plan.channels())
         .count("ELEMENTS", plan.elements())
         .number("DATA_BITS", plan.design.hardware.data_bits.into())
         .count("OPERAND_DEPTH", plan.operands.words())
         .table("STORE_BASES", 16, bases)
         .mask("STORE_IN_BANK", &in_bank)
-        .signed("RESIDUAL_BANK", 16, plan.operands.residual_bank() as i64);
-    if plan.arms.is_empty() {
-        return parameters;
-    }
-    parameters.outer("ROM_DIR").text("ROM_NAME", &plan.design.name)
+        .signed("RESIDUAL_BANK", 16, plan.operands.residual_bank() as i64)
+        .when(!plan.arms.is_empty(), |all| all.outer("ROM_DIR").text("ROM_NAME", &plan.design.name))
 }
 
 /// Where sums of torques are made of taxels' forces, a multiplier for each of a taxel's arms.

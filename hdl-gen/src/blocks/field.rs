@@ -23,13 +23,12 @@ pub fn stages(plan: &Plan) -> u64 {
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
     let (data, words) = (plan.design.hardware.data_bits.into(), plan.streams().words());
+    let in_words = |parameters: Parameters| parameters.when(words > 1, |all| all.count("WORDS", words));
     let Some(folded) = plan.formats.folded else {
-        let parameters = Parameters::new().count("TAXELS", plan.taxels()).number("DATA_BITS", data);
-        return if words > 1 { parameters.count("WORDS", words) } else { parameters };
+        return in_words(Parameters::new().count("TAXELS", plan.taxels()).number("DATA_BITS", data));
     };
     let (force, share, _) = field_shifts(&plan.formats, &folded);
-    let parameters = if words > 1 { Parameters::new().count("WORDS", words) } else { Parameters::new() };
-    parameters
+    in_words(Parameters::new())
         .count("COLUMNS", plan.design.sensor.columns)
         .count("ROWS", plan.design.sensor.rows)
         .number("DATA_BITS", data)

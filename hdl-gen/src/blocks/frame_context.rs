@@ -11,6 +11,5 @@ pub fn parameters(plan: &Plan) -> Parameters {
         ("SCALED", plan.scales_frames()),
         ("AVERAGED", plan.thresholds.error.is_some_and(|error| error.averaged)),
     ];
-    let there = fields.into_iter().filter(|&(_, there)| there);
-    there.fold(Parameters::new(), |parameters, (name, there)| parameters.flag(name, there))
+    fields.into_iter().fold(Parameters::new(), |all, (name, there)| all.when(there, |all| all.flag(name, true)))
 }

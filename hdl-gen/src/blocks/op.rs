@@ -11,34 +11,22 @@ use crate::timing::latency::{OUTPUT_LATENCY, SUMMARY_LATENCY};
 
 /// Parameters of `sptfra_op`.
 pub fn parameters(plan: &Plan) -> Parameters {
-    let parameters = Parameters::new()
+    let words = plan.streams().words();
+    Parameters::new()
         .count("COLUMNS", plan.design.sensor.columns)
         .count("ROWS", plan.design.sensor.rows)
         .flag("FIELD", plan.has_field())
         .flag("DEPENDENT", plan.estimator.block().answers_with_a_line())
         .number("SUM_LSB", plan.formats.g.lsb.into())
         .number("TORQUE_LSB", plan.formats.torque_lsb.into())
-        .number("FIELD_LSB", field_lsb(plan).into());
-    let parameters = match plan.thresholds.error {
-        Some(error) => parameters.flag("WITH_ERROR", true).signed("ERROR_LIMIT", 18, error.limit),
-        None => parameters,
-    };
-    let parameters = if plan.thresholds.thin { parameters.flag("THIN", true) } else { parameters };
-    let words = plan.streams().words();
-    let parameters = if words > 1 {
-        parameters.count("WORDS", words).cycles("FIELD_STAGES", field::stages(plan))
-    } else {
-        parameters
-    };
-    let parameters = match plan.thresholds.slip {
-        Some([limit, release]) => parameters.unsigned("SLIP_LIMIT", FRICTION_BITS, limit as u64).unsigned(
-            "SLIP_RELEASE",
-            FRICTION_BITS,
-            release as u64,
-        ),
-        None => parameters,
-    };
-    parameters.cycles("EXPECTED_SUMMARY_LATENCY", SUMMARY_LATENCY).cycles("EXPECTED_OUTPUT_LATENCY", OUTPUT_LATENCY)
+        .number("FIELD_LSB", field_lsb(plan).into())
+        .some(plan.thresholds.error, |all, error| all.flag("WITH_ERROR", true).signed("ERROR_LIMIT", 18, error.limit))
+        .when(plan.thresholds.thin, |all| all.flag("THIN", true))
+        .when(words > 1, |all| all.count("WORDS", words).cycles("FIELD_STAGES", field::stages(plan)))
+        .some(plan.thresholds.slip, |all, [limit, _]| all.unsigned("SLIP_LIMIT", FRICTION_BITS, limit as u64))
+        .some(plan.thresholds.slip, |all, [_, release]| all.unsigned("SLIP_RELEASE", FRICTION_BITS, release as u64))
+        .cycles("EXPECTED_SUMMARY_LATENCY", SUMMARY_LATENCY)
+        .cycles("EXPECTED_OUTPUT_LATENCY", OUTPUT_LATENCY)
 }
 
 /// One multiplier in turns, for all quotients and products of the summary.

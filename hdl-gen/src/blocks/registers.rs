@@ -7,7 +7,7 @@ use crate::plan::Plan;
 /// Version of the register map: one more whenever a register moves or changes its meaning.
 pub const MAP_VERSION: u8 = 3;
 
-/// What a sample is, in `FEATURES`: 0 float32, 1 int16, 2 uint16.
+/// What a sample is, in `FEATURES` and for `sptfra_samples`: 0 float32, 1 int16, 2 uint16.
 pub fn samples(plan: &Plan) -> u8 {
     plan.streams().sample as u8
 }

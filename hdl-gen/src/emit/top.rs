@@ -36,7 +36,7 @@ fn context(plan: &Plan) -> Context {
     let unpack = streams.intake == Intake::Unpacked;
     let [dead_command_bits, dead_result_bits] = plan.calibration.as_ref().map_or([0, 0], calibration::dead_bits);
     let estimator = estimator_block.parameters(design, plan.channels());
-    let estimator = plan.thresholds.error.iter().fold(estimator, |parameters, error| error.parameters(parameters));
+    let estimator = estimator.some(plan.thresholds.error.as_ref(), |all, error| error.parameters(all));
     let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
     context! {
         // Whether a register bank is around the core, and then the core's own module.
