@@ -4,28 +4,9 @@ use crate::plan::Plan;
 
 /// Nets of the core in the order of the probes, each a wire with a line of its own. They are the handshakes of both
 /// streams, the lanes' programs and results, answers and status.
-const NETS: [&str; 20] = [
-    "in_tvalid",
-    "in_tready",
-    "in_tlast",
-    "frame_ready",
-    "frame_done",
-    "frame_flags",
-    "start",
-    "issued",
-    "result_y",
-    "result_u",
-    "result_g",
-    "result_kept",
-    "result_force",
-    "result_last",
-    "coefficients_complete",
-    "answer_valid",
-    "out_tvalid",
-    "out_tready",
-    "out_tlast",
-    "out_tdata",
-];
+const NETS: &str = "in_tvalid in_tready in_tlast frame_ready frame_done frame_flags start issued \
+    result_y result_u result_g result_kept result_force result_last coefficients_complete answer_valid \
+    out_tvalid out_tready out_tlast out_tdata";
 
 /// What Vivado keeps a net for.
 const MARK: &str = "(* mark_debug = \"true\" *)";
@@ -49,13 +30,13 @@ fn declared(line: &str, zero: &[&str]) -> Option<&'static str> {
         return None;
     }
     let name = words.find(|word| *word != "signed" && !word.starts_with('['))?.trim_end_matches(';');
-    NETS.into_iter().find(|net| *net == name && !zero.contains(net))
+    NETS.split_whitespace().find(|net| *net == name && !zero.contains(net))
 }
 
 /// The nets of a core that are marked, or would be, in the order of the probes: all but those that are [`always_zero`].
 pub fn nets(core: &str, zero: &[&str]) -> Vec<&'static str> {
     let there: Vec<&str> = core.lines().filter_map(|line| declared(line, zero)).collect();
-    NETS.into_iter().filter(|net| there.contains(net)).collect()
+    NETS.split_whitespace().filter(|net| there.contains(net)).collect()
 }
 
 /// The core with a mark above each of its [`nets`].
