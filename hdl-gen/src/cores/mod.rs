@@ -1,16 +1,15 @@
 //! The leaf cores: hardware whose widths do not depend on the geometry, the same in every design.
 //!
 //! Each file states what a core computes, bit for bit, and when; the integer model computes with these references, and
-//! a test compares each core's Verilog with its reference. The Verilog lies in `hdl-gen/rtl`; the package `sptfra-hdl-cores`
-//! prints that of cores without parameters from descriptions in rust-hdl.
+//! a test compares each core's Verilog with its reference. Of multipliers and the skid buffer the test itself has the
+//! reference. The Verilog lies in `hdl-gen/rtl`; the package `sptfra-hdl-cores` prints that of cores without parameters
+//! from descriptions in rust-hdl.
 
 pub mod axis_skid;
 pub mod cordic;
 pub mod divider;
 pub mod fixed_to_float;
 pub mod float_to_fixed;
-pub mod mac;
-pub mod multiply;
 pub mod row_sequencer;
 
 /// Width of the shorter operand of a multiplier, as in one DSP48E2.

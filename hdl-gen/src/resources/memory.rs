@@ -59,12 +59,6 @@ pub fn memory(name: &'static str, count: usize, depth: usize, width: u32, read_o
     Memory { name, block: "", count, depth, width, bram36: ramb36(depth, width as usize, read_only), read_only }
 }
 
-/// One that the RTL demands in block memory (`ram_style`), whatever LUTs would cost.
-pub fn block_memory(name: &'static str, count: usize, depth: usize, width: u32) -> Memory {
-    let bram36 = halves(depth, width as usize) as f64 / 2.0;
-    Memory { name, block: "", count, depth, width, bram36, read_only: false }
-}
-
 /// Banks that `sptfra_rom` makes of so many words.
 pub fn banks(depth: usize) -> usize {
     if depth > MOST_BANKS * BANK { 1 } else { depth.div_ceil(BANK).max(1) }
@@ -95,14 +89,7 @@ fn halves(depth: usize, width: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{block_memory, ramb36};
-
-    #[test]
-    fn what_must_be_block_memory_is_counted() {
-        // In halves.
-        let [small, deep] = [64, 600].map(|depth| (2.0 * block_memory("u", 12, depth, 27).all_bram36()) as usize);
-        assert_eq!([small, deep], [12, 24]);
-    }
+    use super::ramb36;
 
     /// As Yosys maps them; the cases are memories of the shipped designs.
     #[test]

@@ -2,16 +2,19 @@
 
 use std::collections::VecDeque;
 
-use hdl_gen::cores::DROPPED_BITS;
-use hdl_gen::cores::axis_skid::CAPACITY;
-use hdl_gen::cores::mac::{LATENCY, accumulate};
-use hdl_gen::cores::multiply::multiply as product;
 use hdl_gen::cores::row_sequencer::{Product, products, row_word};
-use hdl_gen::plan::matrix::product as rounded_product;
+use hdl_gen::cores::{ACCUMULATOR_BITS, DROPPED_BITS};
+use hdl_gen::plan::matrix::product;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::bench::{Played, Port, Run};
+
+/// Cycles from a lane's operands to the accumulator that holds their product.
+const LANE_LATENCY: usize = 3;
+
+/// Words that the skid buffer holds at most. It takes one only while it holds fewer, and offers them in their order.
+const CAPACITY: usize = 2;
 
 fn bits(flag: bool) -> u64 {
     u64::from(flag)
@@ -20,25 +23,22 @@ fn bits(flag: bool) -> u64 {
 /// Both forms of the lane: they have the same reference and the same cycles.
 pub fn mac(module: &'static str) -> Run {
     const INPUTS: &[Port] = &[("reset", 1), ("valid", 1), ("first", 1), ("coefficient", 18), ("data", 27)];
-    lane(module, INPUTS, |sum, first, [coefficient, data]| accumulate(sum, first, coefficient as i32, data as i32))
+    lane(module, INPUTS, |[coefficient, data]| coefficient * data)
 }
 
 /// The lane of two multipliers.
 pub fn mac_wide(module: &'static str) -> Run {
     const INPUTS: &[Port] = &[("reset", 1), ("valid", 1), ("first", 1), ("coefficient", 27), ("data", 35)];
-    lane(module, INPUTS, |sum, first, [coefficient, data]| {
-        let product = rounded_product(coefficient as i32, data, DROPPED_BITS);
-        ((if first { 0 } else { sum }) + product) << 16 >> 16
-    })
+    lane(module, INPUTS, |[coefficient, data]| product(coefficient as i32, data, DROPPED_BITS))
 }
 
-/// A lane, and what makes the next sum of the last one, whether it starts anew, and both operands.
-fn lane(module: &'static str, inputs: &'static [Port], next: impl Fn(i64, bool, [i64; 2]) -> i64) -> Run {
-    let mut run = Run::new(module, inputs, &[("accumulator", 48)]);
+/// A lane, and what it adds of both operands: to the sum so far, or to 0 where it starts anew. Sums wrap.
+fn lane(module: &'static str, inputs: &'static [Port], product: impl Fn([i64; 2]) -> i64) -> Run {
+    let mut run = Run::new(module, inputs, &[("accumulator", ACCUMULATOR_BITS)]);
     let widths = [inputs[3].1, inputs[4].1];
     let mut rng = ChaCha8Rng::seed_from_u64(1);
-    // Products on their way; the accumulator shows one after LATENCY cycles.
-    let mut pipeline: VecDeque<Option<(bool, [i64; 2])>> = vec![None; LATENCY as usize - 1].into();
+    // Products on their way; the accumulator shows one after LANE_LATENCY cycles.
+    let mut pipeline: VecDeque<Option<(bool, [i64; 2])>> = vec![None; LANE_LATENCY - 1].into();
     let mut accumulator: Option<i64> = None;
     for cycle in 0..40_000 {
         let reset = cycle < 3 || rng.random_ratio(1, 2_000);
@@ -63,7 +63,9 @@ fn lane(module: &'static str, inputs: &'static [Port], next: impl Fn(i64, bool, 
         if let Some((first, operands)) = pipeline.pop_front().flatten()
             && (first || accumulator.is_some())
         {
-            accumulator = Some(next(accumulator.unwrap_or(0), first, operands));
+            let sum = product(operands) + accumulator.filter(|_| !first).unwrap_or(0);
+            let unused = 64 - ACCUMULATOR_BITS;
+            accumulator = Some(sum << unused >> unused);
             run.results += 1;
         }
         if reset {
@@ -99,8 +101,7 @@ fn factors(mut run: Run) -> Run {
         run.push(&[bits(enable), coefficient as u64, data as u64], &[expected.map(|product| product as u64)]);
         run.results += usize::from(expected.is_some());
         if enable {
-            let in_one = i32::try_from(data).map(|data| product(coefficient as i32, data));
-            expected = Some(in_one.unwrap_or(coefficient * data));
+            expected = Some(coefficient * data);
         }
     }
     run
