@@ -25,11 +25,6 @@ pub fn decimals(value: f64, places: usize) -> String {
     }
 }
 
-/// One digit behind the point; very large and very small ones as `2e-7`.
-pub fn scientific(value: f64) -> String {
-    if value != 0.0 && !(0.1..1000.0).contains(&value.abs()) { format!("{value:.0e}") } else { format!("{value:.1}") }
-}
-
 /// One digit behind the point; from a thousand on as `2e3`.
 pub fn percent(value: f64) -> String {
     if value < 1000.0 { format!("{value:.1}") } else { format!("{value:.0e}") }
@@ -54,7 +49,6 @@ mod tests {
 
     #[test]
     fn what_is_far_from_one_is_short() {
-        assert_eq!([0.0, 0.25, 12.34, 2e-7, 4e5].map(scientific), ["0.0", "0.2", "12.3", "2e-7", "4e5"]);
         assert_eq!([2.345, 1234.0].map(percent), ["2.3", "1e3"]);
         assert_eq!(or_dash(None, percent), "–");
     }

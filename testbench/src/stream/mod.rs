@@ -88,12 +88,6 @@ impl<'a> Traffic<'a> {
         }
     }
 
-    /// To a core whose answers have so many 32-bit words.
-    #[must_use]
-    pub fn with_longest_answer(self, words: usize) -> Self {
-        Self { longest_answer: words, ..self }
-    }
-
     /// With the pauses of a mode.
     #[must_use]
     pub fn with_mode(self, mode: &Mode) -> Self {

@@ -12,8 +12,9 @@ use rand_chacha::ChaCha8Rng;
 use testbench::co_simulation::{model_answers, timeout};
 use testbench::compare::Comparison;
 use testbench::stream::{Mode, Pacing, Traffic, exchange};
-use testbench::stream_words::{decode, encode};
+use testbench::stream_words::decode;
 
+use crate::support::frames::encode;
 use crate::support::{built, in_parallel, planned, shipped, simulate_exactly, workspace};
 
 const SIDES: [usize; 2] = [5, 4];

@@ -7,10 +7,10 @@ use hdl_gen::plan::dead::DeadPlan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::co_simulation::model_answers;
-use testbench::stream_words::encode;
 
 use crate::support::effort::half_of;
 use crate::support::faults::broken;
+use crate::support::frames::encode;
 use crate::support::{built, by_plan, frames, in_parallel, planned, resets, shipped, simulate_exactly, with_joint};
 
 fn with_dead(mut design: Design, name: &str, dead: &[usize]) -> Design {

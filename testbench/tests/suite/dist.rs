@@ -9,7 +9,8 @@ use crate::support::{sptfra, workspace};
 use testbench::tools;
 
 fn dist(arguments: &[&Path]) -> Output {
-    tools::python().expect("installed").arg(workspace("tools/dist.py")).args(arguments).output().expect("starts")
+    let mut python = tools::program("python").expect("installed");
+    python.arg(workspace("tools/dist.py")).args(arguments).output().expect("starts")
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -86,7 +87,8 @@ fn a_release_is_cut_by_the_script() {
         fs::copy(workspace(name), here.join(name)).expect("copied");
     }
     let run = |arguments: &[&str]| {
-        tools::python().expect("installed").arg(here.join("tools/dist.py")).args(arguments).output().expect("starts")
+        let mut python = tools::program("python").expect("installed");
+        python.arg(here.join("tools/dist.py")).args(arguments).output().expect("starts")
     };
     let read = |name: &str| fs::read_to_string(here.join(name)).expect("readable");
     // Just behind a release nothing is unreleased yet.

@@ -7,6 +7,7 @@ use std::io::Write as _;
 
 use crate::support::designs::{folders, paper};
 use crate::support::effort::some_of;
+use crate::support::frames::encode;
 use crate::support::{built, in_parallel, planned, shipped, simulate_exactly, with_lanes, workspace};
 use golden::design::{Design, Optimise};
 use golden::scene::Scene;
@@ -16,7 +17,7 @@ use hdl_gen::plan::product::{Coefficients, Product};
 use testbench::accuracy::SolverError;
 use testbench::co_simulation::model_answers;
 use testbench::frame_set::FrameSet;
-use testbench::stream_words::{decode, encode};
+use testbench::stream_words::decode;
 
 /// Of the largest `|f_z|` of a frame; of resultants, of `|F_z|`.
 const MOST_FIELD_ERROR: f64 = 2e-3;

@@ -5,6 +5,7 @@ use std::io::Write as _;
 
 use crate::contacts::{Pressed, Truth, Worst, centred, frames, inside, judged};
 use crate::support::effort::some_of;
+use crate::support::frames::encode;
 use crate::support::{built, in_parallel, planned, shipped, simulate_exactly, with_lanes};
 use golden::design::{Design, Optimise, Outputs};
 use golden::kernel::Kernel;
@@ -19,7 +20,7 @@ use rand_chacha::ChaCha8Rng;
 use testbench::accuracy::SolverError;
 use testbench::co_simulation::{model_answers, timeout};
 use testbench::stream::{Traffic, exchange};
-use testbench::stream_words::{Answer, decode, encode};
+use testbench::stream_words::{Answer, decode};
 
 const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
 const SOFTER: Medium = Medium::BondedLayer { poisson: 0.45 };

@@ -5,13 +5,13 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 
 use crate::support::effort::some_of;
+use crate::support::frames::encode;
 use crate::support::{built, in_parallel, planned, shipped, simulate_exactly, workspace};
 use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
 use golden::scene::Scene;
 use golden::solver::Solver;
 use testbench::accuracy::against_truth;
-use testbench::stream_words::as_received;
-use testbench::stream_words::{Answer, decode, encode};
+use testbench::stream_words::{Answer, as_received, decode};
 
 /// Percentage points between an error of the RTL and that of f64.
 const MOST_DIFFERENCE: f64 = 0.1;

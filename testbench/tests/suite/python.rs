@@ -17,7 +17,7 @@ fn run(command: &mut Command) -> String {
 
 /// The Python of `make tools`, with maturin beside it.
 fn python() -> PathBuf {
-    PathBuf::from(tools::python().expect("make tools was run").get_program())
+    PathBuf::from(tools::program("python").expect("make tools was run").get_program())
 }
 
 /// The wheel in the development profile, on the crates that the other tests have compiled.

@@ -44,7 +44,7 @@ fn two_answers() {
 #[test]
 fn an_answer_without_an_end() {
     let packets = packets(6);
-    let traffic = Traffic::new(&packets, TIMEOUT).with_longest_answer(4);
+    let traffic = Traffic { longest_answer: 4, ..Traffic::new(&packets, TIMEOUT) };
     let error = exchange(&mut load(5), &traffic, |_| ()).expect_err("must be caught");
     assert!(matches!(error, StreamError::Violation(Violation::NoEnd { frame: 0, excess: 1, .. })), "{error}");
     assert!(error.to_string().contains("no m_axis_tlast after 4 words"), "{error}");

@@ -6,6 +6,7 @@
 //! Beside a core with its calibration in RAM a processor writes banks, commits and tares meanwhile, right ones and wrong
 //! ones.
 
+mod banks;
 mod job;
 mod judge;
 mod log;

@@ -8,9 +8,9 @@ use hdl_gen::plan::calibration::CalibrationPlan;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
+use super::banks;
 use super::job::{Fault, Job, TARE_ERRORS};
 use super::log::{Acting, Commits, Log, What};
-use testbench::banks;
 use testbench::dut::{Core, Dut, DutError, Inputs, Outputs};
 use testbench::registers::{Access, Controlled, address};
 

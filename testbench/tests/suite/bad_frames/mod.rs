@@ -14,10 +14,11 @@ use rand_chacha::ChaCha8Rng;
 use testbench::co_simulation::timeout;
 use testbench::compare::Comparison;
 use testbench::stream::{Mode, Outcome, Pattern, Traffic, exchange};
-use testbench::stream_words::{Answer, decode, encode};
+use testbench::stream_words::{Answer, decode};
 use testbench::verilate::Built;
 
 use crate::support::effort::share_of;
+use crate::support::frames::encode;
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, with_joint};
 
 /// Frames of a long row.

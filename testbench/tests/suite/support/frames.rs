@@ -5,7 +5,11 @@ use hdl_gen::plan::Plan;
 use hdl_gen::plan::product::Product;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use testbench::stream_words::encode;
+
+/// The input packet of a frame of stresses in Pa: float32, in taxel order.
+pub fn encode(stress: &[f64]) -> Vec<u32> {
+    stress.iter().map(|&value| (value as f32).to_bits()).collect()
+}
 
 /// A round contact somewhere on the sensor, dragged in some direction: compression in front of it, tension behind.
 pub fn contact(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<u32> {
