@@ -17,78 +17,30 @@ const BIT: &str = "@28";
 const VECTOR: &str = "@22";
 
 /// Signals of the top, by heading, in the order of the page.
-const OF_TOP: [(&str, &[&str]); 4] = [
-    ("clock", &["aclk", "aresetn"]),
-    ("stream_in", &["s_axis_tvalid", "s_axis_tready", "s_axis_tlast", "s_axis_tdata"]),
-    ("stream_out", &["m_axis_tvalid", "m_axis_tready", "m_axis_tlast", "m_axis_tdata"]),
+const OF_TOP: [(&str, &str); 4] = [
+    ("clock", "aclk aresetn"),
+    ("stream_in", "s_axis_tvalid s_axis_tready s_axis_tlast s_axis_tdata"),
+    ("stream_out", "m_axis_tvalid m_axis_tready m_axis_tlast m_axis_tdata"),
     (
         "registers",
-        &[
-            "s_axi_ctrl_awvalid",
-            "s_axi_ctrl_awready",
-            "s_axi_ctrl_awaddr",
-            "s_axi_ctrl_wvalid",
-            "s_axi_ctrl_wready",
-            "s_axi_ctrl_wdata",
-            "s_axi_ctrl_bvalid",
-            "s_axi_ctrl_bready",
-            "s_axi_ctrl_arvalid",
-            "s_axi_ctrl_arready",
-            "s_axi_ctrl_araddr",
-            "s_axi_ctrl_rvalid",
-            "s_axi_ctrl_rready",
-            "s_axi_ctrl_rdata",
-            "interrupt",
-            "resetting",
-            "discarding",
-            "frames_in",
-            "frames_out",
-            "frames_bad",
-        ],
+        "s_axi_ctrl_awvalid s_axi_ctrl_awready s_axi_ctrl_awaddr s_axi_ctrl_wvalid s_axi_ctrl_wready s_axi_ctrl_wdata \
+         s_axi_ctrl_bvalid s_axi_ctrl_bready s_axi_ctrl_arvalid s_axi_ctrl_arready s_axi_ctrl_araddr s_axi_ctrl_rvalid \
+         s_axi_ctrl_rready s_axi_ctrl_rdata interrupt resetting discarding frames_in frames_out frames_bad",
     ),
 ];
 
 /// Signals of the core; each design has some of them.
-const OF_CORE: [(&str, &[&str]); 3] = [
+const OF_CORE: [(&str, &str); 3] = [
     (
         "frames",
-        &[
-            "frame_ready",
-            "frame_done",
-            "frame_bad_length",
-            "frame_not_finite",
-            "direction_valid",
-            "coefficients_complete",
-            "sums_complete",
-            "sums_take",
-            "answer_valid",
-            "answer_take",
-            "u_released",
-            "friction_known",
-            "field_complete",
-            "field_release",
-        ],
+        "frame_ready frame_done frame_bad_length frame_not_finite direction_valid coefficients_complete sums_complete \
+         sums_take answer_valid answer_take u_released friction_known field_complete field_release",
     ),
-    ("programs", &["start", "issued", "bank"]),
+    ("programs", "start issued bank"),
     (
         "results",
-        &[
-            "stress_valid",
-            "result_y",
-            "result_u",
-            "result_g",
-            "result_kept",
-            "result_force",
-            "result_row",
-            "result_last",
-            "taxel_y",
-            "taxel_u",
-            "taxel_force",
-            "taxel_row",
-            "weights_valid",
-            "we_write",
-            "co_write",
-        ],
+        "stress_valid result_y result_u result_g result_kept result_force result_row result_last taxel_y taxel_u \
+         taxel_force taxel_row weights_valid we_write co_write",
     ),
 ];
 
@@ -133,7 +85,7 @@ fn groups(sources: &RtlSources) -> Vec<(&'static str, Vec<Signal>)> {
     for (text, scope, headings) in all {
         let declared = declared(&text);
         for &(heading, names) in headings {
-            let found = names.iter().filter_map(|&name| {
+            let found = names.split_whitespace().filter_map(|name| {
                 let range = declared.get(name)?.clone();
                 Some(Signal { path: format!("{scope}.{name}"), range })
             });
