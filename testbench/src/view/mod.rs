@@ -9,7 +9,7 @@ use golden::sensor::Sensor;
 use golden::solver::Status;
 use hdl_gen::model::Model;
 use hdl_gen::plan::{Plan, PlanError};
-use serde::Serialize;
+use serde_json::{Value, json};
 use thiserror::Error;
 
 use crate::field_plot::{self, Truth};
@@ -50,42 +50,6 @@ pub struct View {
     truth: Option<Truth>,
 }
 
-/// A view for machines; values have the names of the output stream, fields go in taxel order.
-#[derive(Serialize)]
-struct Json<'a> {
-    design: &'a str,
-    /// Where the frames come from.
-    origin: &'a str,
-    frame: usize,
-    columns: usize,
-    status: u32,
-    /// The status in words.
-    meaning: String,
-    #[serde(rename = "F_x")]
-    force_x: f64,
-    #[serde(rename = "F_y")]
-    force_y: f64,
-    #[serde(rename = "F_z")]
-    force_z: f64,
-    mu: f64,
-    phi: f64,
-    mu_x: f64,
-    mu_y: f64,
-    /// Not there if the design puts out resultants only.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    field: Option<Field<'a>>,
-}
-
-#[derive(Serialize)]
-struct Field<'a> {
-    #[serde(rename = "f_x")]
-    x: &'a [f64],
-    #[serde(rename = "f_y")]
-    y: &'a [f64],
-    #[serde(rename = "f_z")]
-    z: &'a [f64],
-}
-
 impl View {
     /// Which frame it is, from 0.
     pub fn number(&self) -> usize {
@@ -113,26 +77,30 @@ impl View {
         has_field.then(|| field_plot::frame(&self.sensor, &self.stress, &self.answer, self.truth.as_ref()))
     }
 
-    /// The same for machines.
-    fn json(&self) -> Json<'_> {
+    /// The same for machines; values have the names of the output stream, fields go in taxel order.
+    fn json(&self) -> Value {
         let Answer { status, resultant: [force_x, force_y, force_z], mu, phi, mu_xy: [mu_x, mu_y], .. } = self.answer;
+        let mut json = json!({
+            "design": self.design,
+            "origin": self.origin,
+            "frame": self.frame,
+            "columns": self.sensor.columns,
+            "status": status,
+            "meaning": Status(status).to_string(),
+            "F_x": force_x,
+            "F_y": force_y,
+            "F_z": force_z,
+            "mu": mu,
+            "phi": phi,
+            "mu_x": mu_x,
+            "mu_y": mu_y,
+        });
         let [x, y, z] = &self.answer.field;
-        Json {
-            design: &self.design,
-            origin: &self.origin,
-            frame: self.frame,
-            columns: self.sensor.columns,
-            status,
-            meaning: Status(status).to_string(),
-            force_x,
-            force_y,
-            force_z,
-            mu,
-            phi,
-            mu_x,
-            mu_y,
-            field: (!z.is_empty()).then_some(Field { x, y, z }),
+        // A design may put out resultants only.
+        if !z.is_empty() {
+            json["field"] = json!({ "f_x": x, "f_y": y, "f_z": z });
         }
+        json
     }
 }
 
@@ -207,10 +175,10 @@ mod tests {
         let alone = view(answer(&[]));
         assert!(alone.page(1.0, false).contains("resultants only"));
         assert_eq!((alone.svg(), alone.largest()), (None, 0.0));
-        let read = |views: &[View]| serde_json::from_str::<serde_json::Value>(&json(views).unwrap()).unwrap();
+        let read = |views: &[View]| serde_json::from_str::<Value>(&json(views).unwrap()).unwrap();
         let one = read(&[alone]);
         assert!(one.get("field").is_none() && one["F_z"] == -3.0 && one["mu_y"] == 0.4, "{one}");
         let two = read(&[view(answer(&[[1.0, 2.0, 3.0]])), view(answer(&[]))]);
-        assert_eq!((&two[0]["field"]["f_y"], &two[1]["frame"]), (&serde_json::json!([2.0]), &serde_json::json!(3)));
+        assert_eq!((&two[0]["field"]["f_y"], &two[1]["frame"]), (&json!([2.0]), &json!(3)));
     }
 }
