@@ -12,67 +12,68 @@ use super::point::Point;
 pub fn csv(points: &[Point]) -> Result<String, SweepError> {
     let failed = |source: std::io::Error| SweepError::Io { action: "write", path: "sweep.csv".into(), source };
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(header()).map_err(|error| failed(error.into()))?;
-    for point in points {
-        writer.write_record(row(point)).map_err(|error| failed(error.into()))?;
+    // No sweep is without points.
+    let names = points.first().map(|point| columns(point).into_iter().map(|(name, _)| name).collect::<Vec<_>>());
+    let rows = points.iter().map(|point| columns(point).into_iter().map(|(_, value)| value).collect());
+    for record in names.into_iter().chain(rows) {
+        writer.write_record(record).map_err(|error| failed(error.into()))?;
     }
     let bytes = writer.into_inner().map_err(|error| failed(error.into_error()))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-fn header() -> Vec<String> {
-    let fixed = "key scene columns rows pitch_x_mm pitch_y_mm depth_mm plan kernel filter estimator joint_units joint_training_set \
-                 coefficient_bits data_bits lanes verified latency_cycles interval_cycles latency_us interval_us \
-                 dsp bram36 rom_bits macs nnz_total frames mean_mu";
-    let mut names: Vec<String> = fixed.split_whitespace().map(str::to_owned).collect();
-    for kind in ["max", "standard_error"] {
-        names.extend(ERROR_NAMES.iter().map(|name| format!("{name}_{kind}")));
-    }
-    names.extend(ERROR_NAMES.iter().map(|name| format!("f64_{name}_max")));
-    names.extend(["resultant_max", "field_max", "refusal"].map(str::to_owned));
-    names
+/// Names and values of a point's line.
+fn columns(point: &Point) -> Vec<(String, String)> {
+    let [pitch_x, pitch_y] = point.sensor.pitch_mm;
+    let (joint, hardware, against) = (point.calibration, point.hardware, point.against_solver);
+    let fixed = [
+        ("key", point.key.clone()),
+        ("scene", point.scene.clone()),
+        ("columns", point.sensor.columns.to_string()),
+        ("rows", point.sensor.rows.to_string()),
+        ("pitch_x_mm", pitch_x.to_string()),
+        ("pitch_y_mm", pitch_y.to_string()),
+        ("depth_mm", point.sensor.depth_mm.to_string()),
+        ("plan", point.plan.to_string()),
+        ("kernel", point.kernel.to_string()),
+        ("filter", point.filter.clone()),
+        ("estimator", point.estimator.to_string()),
+        ("joint_units", of(joint.map(|joint| joint.units))),
+        ("joint_training_set", of(joint.map(|joint| joint.training_set))),
+        ("coefficient_bits", point.coefficient_bits.to_string()),
+        ("data_bits", point.data_bits.to_string()),
+        ("lanes", point.lanes.to_string()),
+        ("verified", format!("{:?}", point.verified).to_lowercase()),
+        ("latency_cycles", of(hardware.map(|hardware| hardware.latency_cycles))),
+        ("interval_cycles", of(hardware.map(|hardware| hardware.interval_cycles))),
+        ("latency_us", of(hardware.map(|hardware| hardware.latency_us))),
+        ("interval_us", of(hardware.map(|hardware| hardware.interval_us))),
+        ("dsp", of(hardware.map(|hardware| hardware.dsp))),
+        ("bram36", of(hardware.map(|hardware| hardware.bram36))),
+        ("rom_bits", of(hardware.map(|hardware| hardware.rom_bits))),
+        ("macs", of(hardware.map(|hardware| hardware.macs))),
+        ("nnz_total", point.nnz_total.to_string()),
+        ("frames", point.frames.to_string()),
+        ("mean_mu", point.mean_mu.to_string()),
+    ];
+    let named = |(name, value): (&str, String)| (name.to_owned(), value);
+    let mut columns: Vec<(String, String)> = fixed.map(named).into();
+    let mut add = |front: &str, kind: &str, values: [f64; 5]| {
+        let names = ERROR_NAMES.iter().map(|name| format!("{front}{name}_{kind}"));
+        columns.extend(names.zip(values.map(|value| value.to_string())));
+    };
+    add("", "max", point.errors.spreads().map(|spread| spread.max));
+    add("", "standard_error", point.errors.spreads().map(|spread| spread.standard_error));
+    add("f64_", "max", point.solver_errors.spreads().map(|spread| spread.max));
+    let last = [
+        ("resultant_max", of(against.and_then(|error| error.resultant_max))),
+        ("field_max", of(against.and_then(|error| error.field_max))),
+        ("refusal", of(point.refusal.as_ref())),
+    ];
+    columns.extend(last.map(named));
+    columns
 }
 
-fn row(point: &Point) -> Vec<String> {
-    let [pitch_x, pitch_y] = point.sensor.pitch_mm;
-    let hardware = point.hardware.as_ref();
-    let of = |value: Option<String>| value.unwrap_or_default();
-    let mut row = vec![
-        point.key.clone(),
-        point.scene.clone(),
-        point.sensor.columns.to_string(),
-        point.sensor.rows.to_string(),
-        pitch_x.to_string(),
-        pitch_y.to_string(),
-        point.sensor.depth_mm.to_string(),
-        point.plan.to_string(),
-        point.kernel.to_string(),
-        point.filter.clone(),
-        point.estimator.to_string(),
-        of(point.calibration.map(|joint| joint.units.to_string())),
-        of(point.calibration.map(|joint| joint.training_set.to_string())),
-        point.coefficient_bits.to_string(),
-        point.data_bits.to_string(),
-        point.lanes.to_string(),
-        format!("{:?}", point.verified).to_lowercase(),
-        of(hardware.map(|hardware| hardware.latency_cycles.to_string())),
-        of(hardware.map(|hardware| hardware.interval_cycles.to_string())),
-        of(hardware.map(|hardware| hardware.latency_us.to_string())),
-        of(hardware.map(|hardware| hardware.interval_us.to_string())),
-        of(hardware.map(|hardware| hardware.dsp.to_string())),
-        of(hardware.map(|hardware| hardware.bram36.to_string())),
-        of(hardware.map(|hardware| hardware.rom_bits.to_string())),
-        of(hardware.map(|hardware| hardware.macs.to_string())),
-        point.nnz_total.to_string(),
-        point.frames.to_string(),
-        point.mean_mu.to_string(),
-    ];
-    row.extend(point.errors.spreads().map(|spread| spread.max.to_string()));
-    row.extend(point.errors.spreads().map(|spread| spread.standard_error.to_string()));
-    row.extend(point.solver_errors.spreads().map(|spread| spread.max.to_string()));
-    let against = point.against_solver.as_ref();
-    row.push(of(against.and_then(|error| error.resultant_max).map(|value| value.to_string())));
-    row.push(of(against.and_then(|error| error.field_max).map(|value| value.to_string())));
-    row.push(of(point.refusal.clone()));
-    row
+fn of(value: Option<impl ToString>) -> String {
+    value.map(|value| value.to_string()).unwrap_or_default()
 }

@@ -14,7 +14,7 @@ use hdl_gen::plan::streams::Streams;
 
 use super::distributed::RunReport;
 use super::grid::Job;
-use super::point::{AgainstSolver, Calibration, Geometry, Hardware, Point, Verified};
+use super::point::{AgainstSolver, Calibration, Hardware, Point, Verified};
 use super::{SweepError, SweepScene};
 use crate::accuracy::{SolverError, StatusCounts, against_truth};
 use crate::co_simulation::{CoSimulation, model_answers, planned};
@@ -107,7 +107,7 @@ fn described(job: &Job, scene: &SweepScene, solver: &Solver, solutions: &[Soluti
     let errors = ErrorSummary::new(&pairs);
     Point {
         key: job.key.clone(),
-        sensor: Geometry::from(sensor),
+        sensor: sensor.clone(),
         scene: scene.name.clone(),
         plan: algorithm.plan,
         kernel: algorithm.kernel,

@@ -31,26 +31,6 @@ impl Verified {
     }
 }
 
-/// Geometry of the sensor.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Geometry {
-    /// Taxels along x.
-    pub columns: usize,
-    /// Taxels along y.
-    pub rows: usize,
-    /// Distance of neighbours along x and y.
-    pub pitch_mm: [f64; 2],
-    /// Thickness of the layer.
-    pub depth_mm: f64,
-}
-
-impl From<&Sensor> for Geometry {
-    fn from(sensor: &Sensor) -> Self {
-        let Sensor { columns, rows, pitch_mm, depth_mm } = *sensor;
-        Self { columns, rows, pitch_mm, depth_mm }
-    }
-}
-
 /// What tells one grid search from another.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Calibration {
@@ -105,7 +85,7 @@ pub struct Point {
     /// What the point is filed under.
     pub key: String,
     /// The sensor.
-    pub sensor: Geometry,
+    pub sensor: Sensor,
     /// Name of the scene.
     pub scene: String,
     /// The plan.
@@ -185,14 +165,14 @@ impl Point {
 }
 
 /// A sensor's geometry for people.
-pub fn sensor_title(sensor: &Geometry) -> String {
-    let Geometry { columns, rows, pitch_mm: [x, y], depth_mm } = sensor;
+pub fn sensor_title(sensor: &Sensor) -> String {
+    let Sensor { columns, rows, pitch_mm: [x, y], depth_mm } = sensor;
     format!("{columns} × {rows} taxels of {x} × {y} mm, {depth_mm} mm deep")
 }
 
 /// The sensors of points, each once, in order.
-pub fn sensors(points: &[Point]) -> Vec<Geometry> {
-    let mut sensors: Vec<Geometry> = Vec::new();
+pub fn sensors(points: &[Point]) -> Vec<Sensor> {
+    let mut sensors: Vec<Sensor> = Vec::new();
     for point in points {
         if !sensors.contains(&point.sensor) {
             sensors.push(point.sensor.clone());

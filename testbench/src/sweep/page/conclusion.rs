@@ -150,8 +150,8 @@ fn variants<'a>(points: &[&'a Point], scenes: &[&str]) -> Vec<Variant<'a>> {
 pub(super) mod tests {
     use super::*;
     use crate::accuracy::StatusCounts;
-    use crate::sweep::point::{Geometry, Verified};
-    use golden::design::{Estimator, Kernel, PlanKind};
+    use crate::sweep::point::Verified;
+    use golden::design::{Estimator, Kernel, PlanKind, Sensor};
     use golden::metrics::{ErrorSummary, Outcome};
 
     /// A point on a scene: multipliers, cycles, and its error along x in percent.
@@ -161,7 +161,7 @@ pub(super) mod tests {
         let errors = ErrorSummary::new(&[(truth, found)]);
         Point {
             key: format!("{scene}{lanes}"),
-            sensor: Geometry { columns: 10, rows: 10, pitch_mm: [4.0, 2.0], depth_mm: 3.0 },
+            sensor: Sensor { columns: 10, rows: 10, pitch_mm: [4.0, 2.0], depth_mm: 3.0 },
             scene: scene.to_owned(),
             plan: PlanKind::Reduced,
             kernel: Kernel::Point,

@@ -5,14 +5,14 @@ pub mod conclusion;
 pub mod front;
 mod kinds;
 
-use golden::design::{Design, Estimator, FileNames};
+use golden::design::{Design, Estimator, FileNames, Sensor};
 use golden::table::Table;
 use serde::Serialize;
 use tera::{Context, Tera};
 use thiserror::Error;
 
 use crate::figures::{grouped, or_dash, percent};
-use crate::sweep::point::{Calibration, Geometry, Point, Verified, sensor_title, sensors};
+use crate::sweep::point::{Calibration, Point, Verified, sensor_title, sensors};
 use crate::sweep::{Sweep, SweepError, SweepScene};
 
 const TEMPLATE: &str = include_str!("../../../templates/report.html.tera");
@@ -114,11 +114,10 @@ pub fn render(contents: &Contents) -> Result<String, PageError> {
     Ok(tera.render(NAME, &Context::from_serialize(contents)?)?)
 }
 
-fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point]) -> Result<SensorSection, PageError> {
+fn section(sensor: &Sensor, designs: &[Design], sweep: &Sweep, points: &[Point]) -> Result<SensorSection, PageError> {
     let own: Vec<&Point> = points.iter().filter(|point| point.sensor == *sensor).collect();
-    let designs: Vec<&Design> = designs.iter().filter(|design| Geometry::from(&design.sensor) == *sensor).collect();
-    let scenes: Vec<&SweepScene> =
-        sweep.scenes.iter().filter(|scene| Geometry::from(&scene.sensor) == *sensor).collect();
+    let designs: Vec<&Design> = designs.iter().filter(|design| design.sensor == *sensor).collect();
+    let scenes: Vec<&SweepScene> = sweep.scenes.iter().filter(|scene| scene.sensor == *sensor).collect();
     let telling: Vec<&str> = scenes.iter().filter(|scene| scene.tells()).map(|scene| scene.name.as_str()).collect();
     let recommended = conclusion::recommended(&own, &telling);
     let foremost = in_order(&designs, recommended);
