@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 use crate::design::Design;
+use crate::resolved::folder;
 
 /// A file that could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -39,6 +40,15 @@ pub fn print_text(text: &str) -> io::Result<()> {
 /// When the folder does not exist or cannot be written, or `path` is a folder.
 pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), OutputError> {
     replace(path, content).map_err(|source| OutputError { path: path.to_path_buf(), source })
+}
+
+/// As [`write_whole`], of a file that is not there yet.
+///
+/// # Errors
+///
+/// [`io::ErrorKind::AlreadyExists`] if it is, or that the folder cannot be written.
+pub fn write_new(path: &Path, content: &[u8]) -> io::Result<()> {
+    Ok(temporary(path, content)?.persist_noclobber(path).map(drop)?)
 }
 
 /// Writes the rows of a measured table in place of the old ones, below the names of its columns. Its lines of comment say
@@ -138,10 +148,11 @@ fn stage(path: &Path, content: &[u8]) -> io::Result<Staged> {
         Ok(_) => return File::options().write(true).open(path).map(Staged::Stream),
         Err(_) => path.to_path_buf(),
     };
-    let folder = match target.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
+    Ok(Staged::File(temporary(&target, content)?, target))
+}
+
+/// A temporary file beside the target that holds the content.
+fn temporary(target: &Path, content: &[u8]) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".golden-");
     #[cfg(unix)]
@@ -150,9 +161,9 @@ fn stage(path: &Path, content: &[u8]) -> io::Result<Staged> {
         // As for any new file, the umask decides; a temporary file would otherwise be private.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder)?;
+    let mut file = builder.tempfile_in(folder(target))?;
     file.write_all(content)?;
-    Ok(Staged::File(file, target))
+    Ok(file)
 }
 
 #[cfg(test)]

@@ -1,11 +1,12 @@
 //! `sptfra new`: a commented design file.
 
 use std::error::Error;
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Estimator, MAX_NOISE, Tension, design_schema};
 use golden::kernel::Kernel;
+use golden::output::write_new;
 use hdl_gen::new_design::{COUNT_BITS, NewDesign};
 
 use golden::progress::Progress;
@@ -164,17 +165,7 @@ pub fn run(new: &Args) -> Result<String, Box<dyn Error>> {
         std::fs::write(&beside, format!("{:#}\n", design_schema())).map_err(failed)?;
         text = format!("#:schema {SCHEMA_FILE}\n{text}");
     }
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".sptfra-");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // As for any new file, the umask decides.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    let mut file = builder.tempfile_in(folder).map_err(failed)?;
-    file.write_all(text.as_bytes()).map_err(failed)?;
-    file.persist_noclobber(&path).map_err(|error| failed(error.error))?;
+    write_new(&path, text.as_bytes()).map_err(failed)?;
     let design = Design::from_toml(&text, "sptfra new")?;
     Ok(lines(new, &design, &path).join("\n") + "\n")
 }
