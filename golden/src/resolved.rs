@@ -31,12 +31,12 @@ pub enum ResolvedError {
 /// # Errors
 ///
 /// [`ResolvedError::Overwrites`].
-pub fn keep_apart(out: &Path, inputs: &[&Path]) -> Result<(), ResolvedError> {
-    let same = |input: &&&Path| match (out.canonicalize(), input.canonicalize()) {
+pub fn keep_apart(out: &Path, inputs: &[impl AsRef<Path>]) -> Result<(), ResolvedError> {
+    let same = |input: &&Path| match (out.canonicalize(), input.canonicalize()) {
         (Ok(out), Ok(input)) => out == input,
         _ => false,
     };
-    match inputs.iter().find(same) {
+    match inputs.iter().map(AsRef::as_ref).find(same) {
         Some(input) => Err(ResolvedError::Overwrites { out: out.to_path_buf(), input: input.to_path_buf() }),
         None => Ok(()),
     }
@@ -58,8 +58,7 @@ impl<'a> Resolved<'a> {
     ///
     /// [`ResolvedError`].
     pub fn new(design: &Design, path: &Path, out: &'a Path) -> Result<Self, ResolvedError> {
-        let named = Design::files_named_in(path)?;
-        let inputs: Vec<&Path> = named.iter().map(AsRef::as_ref).chain([path]).collect();
+        let inputs = Design::inputs_at(path)?;
         Ok(Self { source: fs::read_to_string(path).ok(), ..Self::beside(design, &inputs, out)? })
     }
 
@@ -68,7 +67,7 @@ impl<'a> Resolved<'a> {
     /// # Errors
     ///
     /// [`ResolvedError::Overwrites`] and [`ResolvedError::Calibration`].
-    pub fn beside(design: &Design, inputs: &[&Path], out: &'a Path) -> Result<Self, ResolvedError> {
+    pub fn beside(design: &Design, inputs: &[PathBuf], out: &'a Path) -> Result<Self, ResolvedError> {
         let FileNames { weights, .. } = FileNames::of(&stem(out));
         let resolved = Self { design: out, names: FileNames { weights, ..FileNames::default() }, source: None };
         keep_apart(out, inputs)?;
@@ -85,8 +84,7 @@ impl<'a> Resolved<'a> {
     ///
     /// [`ResolvedError::Design`] and [`ResolvedError::Overwrites`].
     pub fn anew(path: &Path, out: &'a Path) -> Result<Self, ResolvedError> {
-        let named = Design::files_named_in(path)?;
-        let inputs: Vec<&Path> = named.iter().map(AsRef::as_ref).chain([path]).collect();
+        let inputs = Design::inputs_at(path)?;
         let source = fs::read_to_string(path).ok();
         let resolved = Self { design: out, names: FileNames::of(&stem(out)), source };
         resolved.all().iter().try_for_each(|output| keep_apart(output, &inputs))?;

@@ -141,14 +141,7 @@ impl Design {
     }
 
     fn save(&self, path: PathBuf) -> PyResult<()> {
-        let inputs = match &self.source {
-            Some(source) => {
-                let named = Checked::files_named_in(source).map_err(raised)?;
-                named.into_iter().chain([source.clone()]).collect()
-            }
-            None => Vec::new(),
-        };
-        let inputs: Vec<_> = inputs.iter().map(AsRef::as_ref).collect();
+        let inputs = self.source.as_deref().map_or_else(|| Ok(Vec::new()), Checked::inputs_at).map_err(raised)?;
         let resolved = Resolved::beside(&self.inner, &inputs, &path).map_err(raised)?;
         write_together(&resolved.contents(&self.inner, "Written by Design.save of the Python package.")).map_err(raised)
     }

@@ -1,12 +1,12 @@
 //! `sptfra export-calibration`: the calibration that a board loads into its bank.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use golden::bank;
 use golden::design::Design;
 use golden::output::write_whole;
 use golden::resolved::keep_apart;
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use crate::arguments::design_file;
 use crate::message::{self, json_or};
@@ -46,31 +46,22 @@ pub struct Args {
     json: bool,
 }
 
-#[derive(Serialize)]
-struct Report<'a> {
-    design: &'a str,
-    bank: &'a Path,
-    taxels: usize,
-    replaced: &'a [usize],
-}
-
 /// Writes the bank of a design.
 pub fn run(args: &Args) -> message::Result {
     let Args { design: path, out, json } = args;
-    let named = Design::files_named_in(path)?;
-    keep_apart(out, &[path.as_path()].into_iter().chain(named.iter().map(AsRef::as_ref)).collect::<Vec<_>>())?;
+    keep_apart(out, &Design::inputs_at(path)?)?;
     let design = Design::load(path)?;
     let text = bank::to_csv(&design)?;
     write_whole(out, text.as_bytes())?;
     let replaced: &[usize] = if design.input.room == 0 { &[] } else { &design.input.dead };
     let taxels = design.sensor.taxels();
-    let report = Report { design: &design.name, bank: out, taxels, replaced };
-    let text = |report: &Report<'_>| {
+    let (name, out) = (&design.name, out.to_string_lossy());
+    let report = json!({ "design": name, "bank": out, "taxels": taxels, "replaced": replaced });
+    let text = |_: &Value| {
         let dead = match replaced {
             [] => "no taxel replaced".to_owned(),
             replaced => format!("taxels {replaced:?} replaced"),
         };
-        let (name, out) = (report.design, out.display());
         format!(
             "{name}: {taxels} gains and offsets, {dead}: {out}\nnext: load_calibration(\"{out}\") of the board's driver\n"
         )

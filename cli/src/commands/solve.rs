@@ -88,9 +88,9 @@ pub fn run(args: &Args) -> message::Result {
     if is_standard(frames.file) {
         return Err("--frames -: forces of standard input go to standard output; write --out - too".into());
     }
-    let named = Design::files_named_in(design)?;
-    let inputs = [Some(design.as_path()), Some(frames.file), reference].into_iter().flatten();
-    keep_apart(out, &inputs.chain(named.iter().map(AsRef::as_ref)).collect::<Vec<_>>())?;
+    let mut inputs = Design::inputs_at(design)?;
+    inputs.extend([Some(frames.file), reference].into_iter().flatten().map(Path::to_path_buf));
+    keep_apart(out, &inputs)?;
     let design = Design::load(design)?;
     let recording = frames.read_all(&design)?;
     let frames = &recording.frames;

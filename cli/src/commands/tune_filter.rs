@@ -69,9 +69,7 @@ pub fn run(args: &Args) -> message::Result {
         _ => Vec::new(),
     };
     let mut inputs: Vec<_> = scenes.iter().map(|scene| from.join(scene)).collect();
-    inputs.extend(Design::files_named_in(path)?);
-    inputs.push(path.clone());
-    let inputs: Vec<&Path> = inputs.iter().map(AsRef::as_ref).collect();
+    inputs.extend(Design::inputs_at(path)?);
     for output in [Some(out.as_path()), csv].into_iter().flatten() {
         keep_apart(output, &inputs)?;
     }

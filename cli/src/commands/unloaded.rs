@@ -59,8 +59,8 @@ pub fn run(
     }
     let out = out.filter(|_| !rest.touched);
     if let Some(out) = out {
-        let files = Design::files_named_in(path)?;
-        let inputs: Vec<&Path> = files.iter().map(AsRef::as_ref).chain([path, recording.file]).collect();
+        let mut inputs = Design::inputs_at(path)?;
+        inputs.push(recording.file.to_path_buf());
         keep_apart(out, &inputs)?;
         let calibration = rest.calibration(design, frames).map_err(named)?;
         write_whole(out, calibration.to_csv().as_bytes())?;

@@ -183,13 +183,15 @@ impl Design {
         from_text(text, origin, Beside::Memory(files))
     }
 
-    /// The files that a design file names, none of which is read.
+    /// The files of a design: those that its file names, none of which is read, and that file.
     ///
     /// # Errors
     ///
     /// [`DesignError::Read`] and [`DesignError::Syntax`].
-    pub fn files_named_in(path: &Path) -> Result<Vec<PathBuf>, DesignError> {
-        read::files_named_in(&text_of(path)?, &path.display().to_string(), Beside::folder_of(path))
+    pub fn inputs_at(path: &Path) -> Result<Vec<PathBuf>, DesignError> {
+        let mut files = read::files_named_in(&text_of(path)?, &path.display().to_string(), Beside::folder_of(path))?;
+        files.push(path.to_path_buf());
+        Ok(files)
     }
 
     /// The resolved design as TOML: every key that has a value, in a fixed order; parsing it gives this design back. The
