@@ -1,14 +1,14 @@
 //! `sptfra calibrate`: the constants of a design, from simulated contacts or recordings.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use golden::calibrate::{ERROR_FRAMES, Work, calibrate, state_errors};
-use golden::design::{Design, Estimator, Expected, Filter, StandardError, TrainingSet};
+use golden::design::{Design, Estimator, Filter, JointConstants, StandardError, TrainingSet};
 use golden::output::write_together;
 use golden::progress::Progress;
 use golden::resolved::{Resolved, folder};
 use golden::tune_filter::rebase_scenes;
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::calibrate_recorded::{self, Recordings};
 use crate::arguments::{design_file, name_of, word};
@@ -73,19 +73,6 @@ pub struct Args {
     json: bool,
 }
 
-#[derive(Serialize)]
-struct Report<'a> {
-    design: &'a str,
-    resolved: &'a Path,
-    training_set: TrainingSet,
-    gain: f64,
-    friction_correction: [f64; 2],
-    half_window: Option<[usize; 2]>,
-    weights: usize,
-    standard_error: Option<StandardError>,
-    expected_error: Option<Expected>,
-}
-
 /// Calibrates a design and writes the resolved one.
 pub fn run(args: &Args) -> message::Result {
     let Args { design: path, out, recordings, seed, training_set, hidden, quick, thorough, json } = args;
@@ -119,39 +106,42 @@ pub fn run(args: &Args) -> message::Result {
     let remark = format!("Resolved by `sptfra calibrate`, seed {}.", settings.seed);
     write_together(&resolved.contents(&design, &remark))?;
 
-    let constants = &design.algorithm.joint;
-    let correction = constants.correction.as_ref();
-    let report = Report {
-        design: &design.name,
-        resolved: out,
-        training_set: constants.training_set,
-        gain: constants.gain,
-        friction_correction: constants.friction_correction,
-        half_window: correction.map(|correction| correction.half_window),
-        standard_error: design.algorithm.standard_error,
-        expected_error: design.expected_error(),
-        weights: correction.map_or(0, |found| found.hidden.iter().chain(&found.output).map(Vec::len).sum()),
-    };
-    let text = |report: &Report<'_>| {
+    let JointConstants { gain, friction_correction, correction, .. } = design.algorithm.joint.as_ref();
+    let half_window = correction.as_ref().map(|correction| correction.half_window);
+    let weights: usize =
+        correction.iter().flat_map(|found| found.hidden.iter().chain(&found.output)).map(Vec::len).sum();
+    let (standard_error, expected) = (design.algorithm.standard_error, design.expected_error());
+    let report = json!({
+        "design": design.name,
+        "resolved": out.to_string_lossy(),
+        "training_set": training_set,
+        "gain": gain,
+        "friction_correction": friction_correction,
+        "half_window": half_window,
+        "weights": weights,
+        "standard_error": standard_error,
+        "expected_error": expected,
+    });
+    let text = |_: &Value| {
         let mut text = String::new();
-        say!(text, "{}: calibrated design in {}", report.design, out.display());
+        say!(text, "{}: calibrated design in {}", design.name, out.display());
         if has_constants {
-            say!(text, "  training set  {}", report.training_set);
+            say!(text, "  training set  {training_set}");
         }
         say!(text, "  noise       {} % of the largest reading", (1e4 * design.input.noise).round() / 100.0);
         if has_constants {
-            say!(text, "  gain        {:.4}", report.gain);
-            let [c1, c3] = report.friction_correction;
-            let sign = if c3 < 0.0 { '-' } else { '+' };
+            say!(text, "  gain        {gain:.4}");
+            let [c1, c3] = friction_correction;
+            let sign = if *c3 < 0.0 { '-' } else { '+' };
             say!(text, "  friction    {c1:.4} mu {sign} {:.4} mu |mu|^2", c3.abs());
         }
-        if let Some([x, y]) = report.half_window {
-            say!(text, "  correction  {} weights, window {} x {} taxels", report.weights, 2 * x + 1, 2 * y + 1);
+        if let Some([x, y]) = half_window {
+            say!(text, "  correction  {weights} weights, window {} x {} taxels", 2 * x + 1, 2 * y + 1);
         }
-        if let Some(StandardError { model, noise, border }) = report.standard_error {
+        if let Some(StandardError { model, noise, border }) = standard_error {
             say!(text, "  standard error  model {model}, noise {noise}, border {border}");
         }
-        if let Some(expected) = &report.expected_error {
+        if let Some(expected) = &expected {
             say!(text, "{expected}");
         }
         text

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use golden::check::{Beyond, Finding, beyond, check, is_unloaded};
+use golden::check::{beyond, check, is_unloaded};
 use golden::design::Design;
 use golden::matrices::Matrices;
 use golden::numbers::counted;
 use golden::progress::Progress;
-use serde::Serialize;
+use serde_json::json;
 
 use super::recording::{LayoutArguments, Recording, is_standard};
 use super::unloaded;
@@ -54,14 +54,6 @@ pub struct Args {
     json: bool,
 }
 
-#[derive(Serialize)]
-struct Report<'a> {
-    design: &'a str,
-    frames: usize,
-    findings: &'a [Finding],
-    beyond: Beyond,
-}
-
 /// Checks the frames of a file; an error if anything is found.
 pub fn run(args: &Args) -> message::Result {
     let Args { design: path, frames, layout, unloaded, loaded, out, json } = args;
@@ -86,7 +78,7 @@ pub fn run(args: &Args) -> message::Result {
     let file = recording.file.display();
     let mut text = String::new();
     if *json {
-        let report = Report { design: &design.name, frames: frames.len(), findings: &findings, beyond };
+        let report = json!({ "design": design.name, "frames": frames.len(), "findings": findings, "beyond": beyond });
         text += &(serde_json::to_string_pretty(&report)? + "\n");
     } else {
         for finding in &findings {

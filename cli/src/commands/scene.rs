@@ -8,7 +8,7 @@ use golden::progress::Progress;
 use golden::resolved::keep_apart;
 use golden::scene::{Kind, Scene};
 use golden::{forces, frames, geometry};
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::recording::is_standard;
 use crate::arguments::{design_file, rows_file, word, words_of};
@@ -87,15 +87,6 @@ pub struct Args {
     json: bool,
 }
 
-#[derive(Serialize)]
-struct SceneReport<'a> {
-    frames: usize,
-    taxels: usize,
-    frames_file: &'a Path,
-    forces_file: &'a Path,
-    sensor_file: &'a Path,
-}
-
 /// The random choice of contacts of a kind.
 #[derive(Clone, Copy, clap::Args)]
 pub struct RandomContacts {
@@ -159,21 +150,19 @@ pub fn run(args: &Args) -> message::Result {
         return Ok((geometry::remark(&sensor) + &frames::to_text(&stresses)).into());
     }
     frames::write_frames(out, &stresses)?;
-    let report = SceneReport {
-        frames: stresses.len(),
-        taxels: sensor.taxels(),
-        frames_file: out,
-        forces_file: &forces_file,
-        sensor_file: &sensor_file,
-    };
-    let text = |report: &SceneReport<'_>| {
+    let (frames, taxels) = (stresses.len(), sensor.taxels());
+    let [out, forces, of_sensor] = [out, &forces_file, &sensor_file].map(|file| file.to_string_lossy());
+    let report = json!({
+        "frames": frames,
+        "taxels": taxels,
+        "frames_file": out,
+        "forces_file": forces,
+        "sensor_file": of_sensor,
+    });
+    let text = |_: &Value| {
         format!(
-            "{} frames of {} taxels in {}\ntheir true forces in {}\ntheir sensor, {sensor}, in {}\n",
-            report.frames,
-            report.taxels,
-            out.display(),
-            forces_file.display(),
-            sensor_file.display()
+            "{frames} frames of {taxels} taxels in {out}\ntheir true forces in {forces}\n\
+             their sensor, {sensor}, in {of_sensor}\n"
         )
     };
     Ok(json_or(&report, *json, text)?.into())
