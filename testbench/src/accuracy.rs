@@ -79,43 +79,38 @@ impl StatusCounts {
 
     /// Counts statuses.
     pub fn of(statuses: &[Status]) -> Self {
-        let with = |bit: Status| statuses.iter().filter(|status| status.contains(bit)).count();
-        Self {
-            good: statuses.iter().filter(|status| status.0 == 0).count(),
-            no_contact: with(Status::NO_CONTACT),
-            direction_unknown: with(Status::DIRECTION_UNKNOWN),
-            at_bound: with(Status::AT_BOUND),
-            saturated: with(Status::SATURATED),
-            not_finite: with(Status::NOT_FINITE),
-            bad_length: with(Status::BAD_LENGTH),
-            low_confidence: with(Status::LOW_CONFIDENCE),
-            several_contacts: with(Status::SEVERAL_CONTACTS),
-            replaced: with(Status::REPLACED),
-            too_many_replaced: with(Status::TOO_MANY_REPLACED),
-            slip: with(Status::SLIP),
-            no_tension: with(Status::NO_TENSION),
+        let good = statuses.iter().filter(|status| status.0 == 0).count();
+        let mut counts = Self { good, ..Self::default() };
+        for (bit, count) in counts.by_bit() {
+            *count = statuses.iter().filter(|status| status.contains(bit)).count();
         }
+        counts
     }
 
     /// The counts that are not zero, with words for people.
-    pub fn present(&self) -> Vec<(&'static str, usize)> {
-        let bits = [
-            (Status::NO_CONTACT, self.no_contact),
-            (Status::DIRECTION_UNKNOWN, self.direction_unknown),
-            (Status::AT_BOUND, self.at_bound),
-            (Status::SATURATED, self.saturated),
-            (Status::NOT_FINITE, self.not_finite),
-            (Status::BAD_LENGTH, self.bad_length),
-            (Status::LOW_CONFIDENCE, self.low_confidence),
-            (Status::SEVERAL_CONTACTS, self.several_contacts),
-            (Status::REPLACED, self.replaced),
-            (Status::TOO_MANY_REPLACED, self.too_many_replaced),
-            (Status::SLIP, self.slip),
-            (Status::NO_TENSION, self.no_tension),
-        ];
-        let count = |bit: Status| bits.iter().find(|(of, _)| *of == bit).map_or(0, |&(_, count)| count);
+    pub fn present(mut self) -> Vec<(&'static str, usize)> {
+        let good = self.good;
+        let bits = self.by_bit();
+        let count = |bit: Status| bits.iter().find(|(of, _)| *of == bit).map_or(0, |(_, count)| **count);
         let named = Status::NAMED.into_iter().map(|(bit, name)| (name, count(bit)));
-        std::iter::once(("good", self.good)).chain(named).filter(|&(_, count)| count > 0).collect()
+        std::iter::once(("good", good)).chain(named).filter(|&(_, count)| count > 0).collect()
+    }
+
+    fn by_bit(&mut self) -> [(Status, &mut usize); 12] {
+        [
+            (Status::NO_CONTACT, &mut self.no_contact),
+            (Status::DIRECTION_UNKNOWN, &mut self.direction_unknown),
+            (Status::AT_BOUND, &mut self.at_bound),
+            (Status::SATURATED, &mut self.saturated),
+            (Status::NOT_FINITE, &mut self.not_finite),
+            (Status::BAD_LENGTH, &mut self.bad_length),
+            (Status::LOW_CONFIDENCE, &mut self.low_confidence),
+            (Status::SEVERAL_CONTACTS, &mut self.several_contacts),
+            (Status::REPLACED, &mut self.replaced),
+            (Status::TOO_MANY_REPLACED, &mut self.too_many_replaced),
+            (Status::SLIP, &mut self.slip),
+            (Status::NO_TENSION, &mut self.no_tension),
+        ]
     }
 }
 
