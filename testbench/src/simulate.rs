@@ -164,6 +164,8 @@ fn run_mode(job: &Job<'_>, mode: Mode, progress: &impl Fn()) -> Result<(ModeResu
 fn spacing_without_loss(job: &Job<'_>, spacing: u64, progress: &impl Fn()) -> Result<u64, StreamError> {
     /// Beginnings for each frame that finds room, where they pile up.
     const OFFERED: u64 = 4;
+    /// More intervals than a frame can spend in the core and its ingress FIFO.
+    const HELD: u64 = 8;
     let run = |count: usize, cycles: u64, progress: &dyn Fn()| {
         let mut core: Dut = job.built.load(job.seed)?;
         let packets: Vec<Vec<u32>> = job.timed.iter().cycle().take(count).cloned().collect();
@@ -176,8 +178,16 @@ fn spacing_without_loss(job: &Job<'_>, spacing: u64, progress: &impl Fn()) -> Re
         return Ok(interval(&at_spacing).max(spacing + 1));
     }
     let piled_up = run(OFFERED as usize * INTERVAL_FRAMES, spacing / OFFERED, &|| ())?;
-    let sooner = run(INTERVAL_FRAMES, spacing - 1, &|| ())?;
-    Ok(interval(&piled_up).min(interval(&sooner)))
+    let mut frames = INTERVAL_FRAMES;
+    let sooner = loop {
+        let outcome = run(frames, spacing - 1, &|| ())?;
+        // Each frame waits a cycle longer than the last one: that shows when all that can wait does.
+        if !outcome.dropped.is_empty() || interval(&outcome) >= spacing || frames as u64 > HELD * spacing {
+            break interval(&outcome);
+        }
+        frames *= 4;
+    };
+    Ok(interval(&piled_up).min(sooner))
 }
 
 /// Latency and interval, on frames repeated as often as needed.
