@@ -190,7 +190,7 @@ def error_latency():
     hw1 = published["HW1"]
     place = (x(float(hw1["latency_us"])), y(float(hw1["tangential"])))
     parts.append(f'<rect x="{place[0] - 6:.1f}" y="{place[1] - 6:.1f}" width="12" height="12" fill="{COLOURS[0]}"/>')
-    parts.append(text(place[0] + 4, place[1] - 14, "published design", "end", size=12))
+    parts.append(text(place[0] + 4, place[1] - 14, "published HW 1, no filter", "end", size=12))
     return picture(width, height, "Error against latency", parts)
 
 
