@@ -279,7 +279,7 @@ int sptfra_load_bank_and_curve(const sptfra *device, const double *gain, const d
 /* A word of the active bank, or of the other one. */
 int sptfra_read_calibration(const sptfra *device, uint16_t index, int acting, uint32_t *word);
 #define SPTFRA_MOST_TARE_LOG2 10u
-/* Begins to average the next 2^log2_frames frames, which are to be at rest; sptfra_calibration_wait says what came of
+/* Begins to average the next 2^log2_frames frames, which are to be unloaded; sptfra_calibration_wait says what came of
  * it, once they were sent. */
 int sptfra_tare(const sptfra *device, unsigned log2_frames);
 /* Waits for the end of a commit or a tare, asking at most so many times; SPTFRA_TIMEOUT: it is still under way. */

@@ -249,10 +249,10 @@ class Sptfra:
         return self._core.read(Register.CALIBRATION_DATA)
 
     def tare(self, frames, timeout=1.0):
-        """Takes the mean of 2**n frames at rest, n up to 10, off the offsets; returns their `Forces`, from before.
+        """Takes the mean of 2**n unloaded frames, n up to 10, off the offsets; returns their `Forces`, from before.
 
         Raises ValueError on another number of frames or another shape, before the core knows of a tare, RuntimeError if
-        they are not at rest, a taxel's stress spreading by more than the noise floor, clipped or no numbers: then nothing
+        they are not unloaded, a taxel's stress spreading by more than the noise floor, clipped or no numbers: then nothing
         has changed.
         """
         self._needs_calibration()

@@ -1,4 +1,4 @@
-//! A sensor on which nothing presses: what each taxel reads then, how it varies, and what that says of a design.
+//! An unloaded sensor: what each taxel reads, how it varies, and which keys of a design follow.
 
 use serde::Serialize;
 
@@ -7,7 +7,7 @@ use crate::dead_taxels::MOST_DEAD;
 use crate::design::{Calibration, Design};
 use crate::numbers::{counted, magnitude, middle as median};
 
-/// So few frames tell no deviation.
+/// Fewer frames give no standard deviation.
 const FRAMES: usize = 10;
 /// A taxel that varies this many times as much as the median one is noisy.
 const NOISY: f64 = 4.0;
@@ -17,7 +17,7 @@ const ROUNDING: f64 = 0.289;
 const SAME: f64 = 0.7;
 /// A chance that is none.
 const NO_CHANCE: f64 = 1e-3;
-/// A constant reading this many times as far from the median as half of the taxels are is that of no sensor at rest.
+/// A constant reading so many times the median distance from the median is stuck: no unloaded taxel reads that.
 const FAR: f64 = 10.0;
 /// This share of the readings at the least of all is a converter that clips there.
 const CLIPPED: f64 = 0.05;
@@ -29,12 +29,12 @@ const QUIET: f64 = 3.0;
 const LOUD: f64 = 0.01;
 /// Noise that goes on from frame to frame by more than this is not averaged as white noise is.
 const GOES_ON: f64 = 0.3;
-/// Neighbours at rest have less than this in common.
+/// Unloaded neighbours correlate by less than this.
 const TOGETHER: f64 = 0.5;
 /// Frames whose largest reading is this share of the largest of all have load.
 const LOADED: f64 = 0.1;
 
-/// Why frames tell nothing of a sensor at rest.
+/// Why frames do not measure an unloaded sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RestError {
     /// Too few frames.
@@ -62,7 +62,7 @@ pub enum RestError {
     LessLoad(usize, usize),
 }
 
-/// What one taxel reads at rest, in the units of the file.
+/// What one taxel reads unloaded, in the units of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TaxelAtRest {
     /// Its number.
@@ -77,14 +77,14 @@ pub struct TaxelAtRest {
     pub correlation: f64,
 }
 
-/// What frames tell of a sensor on which nothing presses.
+/// What frames of an unloaded sensor measure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AtRest {
     /// A line for each taxel.
     pub taxels: Vec<TaxelAtRest>,
     /// Taxels that never change while the others do, and those that the design says are dead.
     pub dead: Vec<usize>,
-    /// Taxels that never change and read what no taxel at rest does.
+    /// Taxels that never change and read what no unloaded taxel does.
     pub stuck: Vec<usize>,
     /// Taxels that vary several times as much as the median one.
     pub noisy: Vec<usize>,
@@ -108,7 +108,7 @@ pub struct AtRest {
 }
 
 impl AtRest {
-    /// What frames, values as they are in the file, tell of the design's sensor.
+    /// Measures frames of the design's unloaded sensor, with values as they are in the file.
     ///
     /// # Errors
     ///
@@ -119,7 +119,7 @@ impl AtRest {
         }
         let all: Vec<TaxelAtRest> = (0..design.sensor.taxels()).map(|taxel| taxel_at_rest(frames, taxel)).collect();
         let known = |taxel: usize| design.input.dead.contains(&taxel);
-        // Numbers with fractions have no steps that tell.
+        // Numbers with fractions have no known steps.
         let step = if frames.iter().flatten().all(|value| value.fract() == 0.0) { 1.0 } else { 0.0 };
         let middle = median(all.iter().filter(|each| !known(each.taxel)).map(|each| each.noise));
         let (dead, stuck, silent) = constant(design, frames, &all, middle, step);

@@ -65,7 +65,7 @@ def plot_contacts(design: Design, forces: Forces, index: int = 0, ax: Any = None
     """Draws the contacts of a frame on the grid in millimetres, of a design with `contacts` of 2 or more.
 
     A dot is a contact's centre, as wide as its normal force is large, an arrow its tangential force; the circle around the
-    arrow's tip is its standard error, where the design tells one. Returns the matplotlib axes, `ax` if given. Raises
+    arrow's tip is its standard error, where the design states one. Returns the matplotlib axes, `ax` if given. Raises
     `ImportError` without matplotlib and `ValueError` where no contacts are known or there is no such frame.
     """
     plt = pyplot()

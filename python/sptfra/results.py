@@ -39,7 +39,7 @@ class Beyond(NamedTuple):
 
 @dataclass(frozen=True)
 class Rest:
-    """What frames tell of a sensor on which nothing presses, in their units unless a name says pascals."""
+    """What frames of an unloaded sensor measure, in their units unless a name says pascals."""
 
     #: (rows, columns): mean of each taxel.
     offset: np.ndarray = field(repr=False)
@@ -49,7 +49,7 @@ class Rest:
     drift: np.ndarray = field(repr=False)
     #: Taxels that never change while the others do, and those of the design.
     dead: tuple[int, ...]
-    #: Taxels that never change and read what none at rest does.
+    #: Taxels that never change and read what no unloaded taxel does.
     stuck: tuple[int, ...]
     #: Taxels that vary four times as much as the median one.
     noisy: tuple[int, ...]

@@ -109,7 +109,7 @@ pub fn beyond<'py>(py: Python<'py>, design: &Design, frames: &Bound<'py, PyAny>)
     py.import("sptfra.results")?.getattr("Beyond")?.call1((readings, share, frames))
 }
 
-/// What frames tell of a sensor on which nothing presses.
+/// What frames of an unloaded sensor measure.
 #[pyfunction]
 pub fn rest<'py>(py: Python<'py>, design: &Design, frames: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let design = &design.inner;

@@ -1,4 +1,4 @@
-//! Pictures of one frame: the stress that the taxels feel, the forces found from it and what they are off; in
+//! Pictures of one frame: the stress at the taxels, the forces found from it and what they are off; in
 //! millimetres, with scales.
 
 use golden::sensor::Sensor;
@@ -167,7 +167,7 @@ fn height(sensor: &Sensor) -> f64 {
 
 fn draw_stress(svg: &mut Svg, sensor: &Sensor, stress: &[f64]) {
     let grid = Grid::new(sensor, 0.0);
-    grid.frame(svg, "stress that the taxels feel");
+    grid.frame(svg, "stress at the taxels");
     grid.colours(svg, stress, "kPa", 1e-3);
 }
 
@@ -260,7 +260,7 @@ fn draw_errors(svg: &mut Svg, sensor: &Sensor, x: f64, answer: &Answer, field: &
 pub fn frame(sensor: &Sensor, stress: &[f64], answer: &Answer, truth: Option<&Truth>) -> String {
     let field = truth.and_then(|truth| truth.field.as_ref());
     let width = if field.is_some() { 3.0 * WIDTH } else { 2.0 * WIDTH };
-    let mut svg = Svg::new(width, height(sensor), "Stress that the taxels feel, and the forces found from it");
+    let mut svg = Svg::new(width, height(sensor), "Stress at the taxels, and the forces found from it");
     draw_stress(&mut svg, sensor, stress);
     draw_forces(&mut svg, sensor, WIDTH, answer, truth);
     if let Some(field) = field {

@@ -27,12 +27,12 @@ pub struct FrameSet {
 }
 
 impl FrameSet {
-    /// The standing set of ground-truth frames for a sensor.
+    /// Frames of a simulated contact, with known forces: those of [`Scene::standing`].
     ///
     /// # Errors
     /// [`SceneError`] if the scene cannot be computed for this geometry.
     pub fn standing(sensor: &Sensor) -> Result<Self, SceneError> {
-        Self::of_scene(&Scene::standing(sensor), "the sensor's standing scene")
+        Self::of_scene(&Scene::standing(sensor), "the simulated contact")
     }
 
     /// The frames of a scene.

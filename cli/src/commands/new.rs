@@ -182,7 +182,10 @@ fn lines(new: &Args, design: &Design, path: &Path) -> Vec<String> {
     let is_joint = design.algorithm.estimator == Estimator::Joint;
     if is_joint {
         let calibrated = new.dir.join(format!("{}-calibrated.toml", new.name));
-        next.push((format!("sptfra calibrate {shown} --out {}", calibrated.display()), "smaller errors, in a minute"));
+        next.push((
+            format!("sptfra calibrate {shown} --out {}", calibrated.display()),
+            "smaller errors, in one to two minutes",
+        ));
     }
     let widest = next.iter().map(|(command, _)| command.len()).max().unwrap_or(0);
     let mut lines = vec![format!("{shown}: {}; edit it, then run", design.sensor)];
@@ -206,11 +209,11 @@ fn lines(new: &Args, design: &Design, path: &Path) -> Vec<String> {
     if new.counts.is_some() {
         if new.full_scale_pa.is_none() {
             lines.push(format!(
-                "The largest count is taken for {DEFAULT_FULL_SCALE_PA} Pa; --full-scale-pa says otherwise."
+                "The largest count stands for {DEFAULT_FULL_SCALE_PA} Pa; set another stress with --full-scale-pa."
             ));
         }
         lines.push(
-            "Larger counts are taken to press; if yours fall under load, change the sign of pa_per_count.".to_owned(),
+            "Larger counts mean more pressure; if yours fall under load, change the sign of pa_per_count.".to_owned(),
         );
     }
     if design.algorithm.regularisation.factor() > 0.0 {

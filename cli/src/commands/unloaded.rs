@@ -37,7 +37,7 @@ struct Report<'a> {
     expected_error: Option<Expected>,
 }
 
-/// Reports what each taxel reads at rest, and writes the calibration that takes it off.
+/// Reports what each taxel reads unloaded, and writes the calibration that takes it off.
 pub fn run(
     path: &Path,
     design: &Design,

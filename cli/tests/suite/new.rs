@@ -38,9 +38,9 @@ fn geometry_and_tension_have_to_be_given() {
     // What a count is worth, and which way it goes.
     let counts = [&small[..], &["--counts", "12"]].concat();
     let (said, _) = new(&counts);
-    assert!(said.contains("taken for 100000 Pa") && said.contains("Larger counts are taken to press"), "{said}");
+    assert!(said.contains("stands for 100000 Pa") && said.contains("Larger counts mean more pressure"), "{said}");
     let (said, _) = new(&[&counts[..], &["--full-scale-pa", "60000"]].concat());
-    assert!(!said.contains("taken for 100000 Pa") && said.contains("Larger counts are taken to press"), "{said}");
+    assert!(!said.contains("stands for 100000 Pa") && said.contains("Larger counts mean more pressure"), "{said}");
 }
 
 /// What docs/explanation/estimators.md says of a new design beside `sensor1-fast`, which has neither.

@@ -130,7 +130,7 @@ fn a_frame_is_shown_plainly_where_there_is_no_terminal() {
     let ran = sptfra_in(folder.path(), &["view", &design, "--frame", "9"]);
     let page = text(&ran.stdout);
     assert!(ran.status.success() && ran.stderr.is_empty(), "{}", text(&ran.stderr));
-    assert!(page.starts_with("small_4x3, frame 9 of the sensor's standing scene\n"), "{page}");
+    assert!(page.starts_with("small_4x3, frame 9 of the simulated contact\n"), "{page}");
     assert!(!page.contains('\x1b') && page.lines().count() == 8, "{page}");
     // Three rows of four taxels, the last row first; the largest force has a nine.
     let rows: Vec<&str> = page.lines().skip(4).collect();
@@ -152,7 +152,7 @@ fn a_frame_is_shown_plainly_where_there_is_no_terminal() {
     let refused = sptfra_in(folder.path(), &["view", &design, "--frame", "36"]);
     let message = text(&refused.stderr);
     assert!(!refused.status.success() && refused.stdout.is_empty());
-    assert_eq!(message, "error: --frame 36: the sensor's standing scene has 36 frames; choose 0 to 35\n");
+    assert_eq!(message, "error: --frame 36: the simulated contact has 36 frames; choose 0 to 35\n");
 }
 
 /// What a command writes to a terminal of so many columns.
@@ -197,7 +197,7 @@ fn several_frames_play_in_one_place_of_a_terminal_and_are_pages_elsewhere() {
     let all: serde_json::Value = serde_json::from_slice(&view(&["--frame", "all", "--json"]).stdout).expect("JSON");
     let numbers: Vec<_> = all.as_array().expect("a list").iter().filter_map(|view| view["frame"].as_u64()).collect();
     assert_eq!(numbers, (0..36).collect::<Vec<_>>());
-    for (wrong, why) in [("5-3", "write a frame as 4"), ("30-40", "--frame 36: the sensor's standing scene has 36")] {
+    for (wrong, why) in [("5-3", "write a frame as 4"), ("30-40", "--frame 36: the simulated contact has 36")] {
         let refused = view(&["--frame", wrong]);
         assert!(!refused.status.success() && text(&refused.stderr).contains(why), "{}", text(&refused.stderr));
     }

@@ -40,7 +40,7 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: usize, peak: f
             )
         } else {
             format!(
-                "{what} of their sign: the converter's end on that side? No status tells of what is beyond it: let its \
+                "{what} of their sign: the converter's end on that side? Readings beyond it get no status: let its \
                  range reach farther than {farthest:.0} Pa there"
             )
         })

@@ -97,7 +97,7 @@ const PRESSES: f64 = 0.2;
 const LOUD: f64 = 0.01;
 /// A floor above the noise is this many times its mean.
 const ABOVE_NOISE: f64 = 1.5;
-/// Of a sensor at rest at most this share of the readings lies above a noise floor of three deviations,
+/// Of an unloaded sensor at most this share of the readings lies above a noise floor of three deviations,
 const ABOVE_FLOOR: f64 = 0.01;
 /// and none by more than this factor.
 const FAR_ABOVE: f64 = 3.0;
@@ -154,7 +154,7 @@ fn check_mended(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices
     findings
 }
 
-/// Whether frames are those of a sensor at rest, tared, with a noise floor above its noise.
+/// Whether frames are those of an unloaded sensor, tared, with a noise floor above its noise.
 pub fn is_unloaded(design: &Design, frames: &[Vec<f64>]) -> bool {
     let floor = design.algorithm.noise_floor_pa;
     let stress = in_pascals(design, frames).concat();

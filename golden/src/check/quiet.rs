@@ -4,7 +4,7 @@ use super::{ABOVE_NOISE, LOUD, PRESSES, count, holds, largest};
 use crate::design::Design;
 use crate::sensor::Sensor;
 
-/// From so many frames on, what stays is told from what varies.
+/// From so many frames on, what stays is separated from what varies.
 const FRAMES: usize = 8;
 /// Neighbours vary on their own where nothing presses; under a contact this share of it is in common.
 pub(super) const TOGETHER: f64 = 0.3;
@@ -13,7 +13,7 @@ const OFFSET: f64 = 0.05;
 /// An offset is one, and no noise, from so many deviations on.
 const CLEAR: f64 = 3.0;
 
-/// A message where frames, in pascals, are those of a sensor at rest.
+/// A message where frames, in pascals, are those of an unloaded sensor.
 pub(super) fn check(design: &Design, stress: &[Vec<f64>], is_loaded: &[bool], peak: f64) -> Option<String> {
     let full_scale = design.hardware.full_scale_pa;
     let remedy = "`sptfra check DESIGN --frames FRAMES --unloaded` gives each taxel's offset, noise and drift";
@@ -22,8 +22,8 @@ pub(super) fn check(design: &Design, stress: &[Vec<f64>], is_loaded: &[bool], pe
         && let Some((noise, of, mean)) = noise(&design.sensor, stress, is_loaded)
     {
         return Some(format!(
-            "nothing presses in {noise} of {}: readings of either sign, {mean:.3} Pa in the mean, add up to nothing. If that \
-             is the sensor at rest, write algorithm.noise_floor_pa = {:.1}, and such frames have the status \"no contact\"; \
+            "nothing presses in {noise} of {}: readings of either sign, {mean:.3} Pa in the mean, add up to nothing. If the \
+             sensor was unloaded, write algorithm.noise_floor_pa = {:.1}, and such frames have the status \"no contact\"; \
              {remedy}",
             count(of),
             floor(mean)
@@ -37,7 +37,7 @@ pub(super) fn check(design: &Design, stress: &[Vec<f64>], is_loaded: &[bool], pe
         format!("nothing presses in {of}: taxels stay as they are")
     };
     Some(format!(
-        "{begin}, within {mean:.3} Pa in the mean, each on its own. If that is the sensor at rest, {remedy}, and writes them \
+        "{begin}, within {mean:.3} Pa in the mean, each on its own. If the sensor was unloaded, {remedy}, and writes them \
          into a calibration; the noise floor is algorithm.noise_floor_pa = {:.1}",
         floor(mean)
     ))

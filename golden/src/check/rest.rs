@@ -57,7 +57,7 @@ fn pressed(design: &Design, loaded: &[Vec<f64>], is_tared: bool) -> Option<Strin
     holds(pressed, loaded.len()).then(|| {
         let cause = if -2.0 * mean > design.hardware.full_scale_pa {
             format!(
-                "do the readings fall where something presses? Change {}, and give each taxel's reading at rest as its offset \
+                "do the readings fall where something presses? Change {}, and give each taxel's unloaded reading as its offset \
                  in the file of sensor.calibration",
                 Scale::of(design).sign
             )

@@ -149,7 +149,7 @@ impl SweepScene {
     /// [`SceneError`] if it cannot be computed for this geometry.
     pub fn standing(sensor: &Sensor) -> Result<Self, SceneError> {
         let name = "standing".to_owned();
-        Self::of(name.clone(), name, Scene::standing(sensor), "the sensor's standing scene".to_owned())
+        Self::of(name.clone(), name, Scene::standing(sensor), "the simulated contact".to_owned())
     }
 
     fn of(name: String, text: String, scene: Scene, origin: String) -> Result<Self, SceneError> {

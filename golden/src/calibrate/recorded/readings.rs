@@ -1,4 +1,4 @@
-//! From readings to the design: what a sensor reads at rest, and the keys that say what its counts mean.
+//! From readings to the design: what a sensor reads unloaded, and the keys that say what its counts mean.
 
 use super::holds::Holds;
 use super::shape::{self, Own, Shape};
@@ -9,18 +9,18 @@ use crate::numbers::middle;
 const HEADROOM: [f64; 2] = [1.25, 32.0];
 /// A noise floor of so many deviations.
 const QUIET: f64 = 3.0;
-/// Readings at rest below this share of the largest are 0.
+/// Unloaded readings below this share of the largest are 0.
 const TARED: f64 = 0.005;
 /// A count that is worth so many times what the design says is in another unit, or the force is.
 const FAR: f64 = 300.0;
 /// Pieces that a power law of another base becomes.
 const LAW_PIECES: i32 = 32;
 
-/// What a sensor reads at rest.
+/// What a sensor reads unloaded.
 pub(super) struct Readings {
     /// 1 where pressing raises the readings, else -1.
     pub(super) sign: f64,
-    /// Readings at rest times the sign, one a taxel.
+    /// Unloaded readings times the sign, one a taxel.
     pub(super) rest: Vec<f64>,
     /// The middle one: curves begin there.
     pub(super) base: f64,
@@ -109,7 +109,7 @@ impl Readings {
             },
             &Shape::Power { power, scale, straight } => {
                 let tared = self.rest.iter().all(|rest| rest.abs() < TARED * self.range[1]);
-                // Below 1 a law is infinitely steep at rest.
+                // Below 1 a law is infinitely steep at zero load.
                 input.curve = Some(if tared && self.sign > 0.0 && power >= 1.0 {
                     Curve::power_law(power, -scale, &hardware)
                 } else {

@@ -52,7 +52,7 @@ pub(super) struct Terms<'a> {
     pub(super) loads: &'a [f64],
     /// What an error of a hold counts: the inverse of a load.
     pub(super) trust: &'a [f64],
-    /// Readings at rest, with the sign that makes pressing positive: one curve serves taxels of several.
+    /// Unloaded readings, with the sign that makes pressing positive: one curve serves taxels of several.
     pub(super) rest: &'a [f64],
     /// That of which the knots are counted from.
     pub(super) base: f64,

@@ -1,4 +1,4 @@
-//! The constants of friction from tangential forces alone, where the design tells the normal force.
+//! The constants of friction from tangential forces alone, where the design gives the normal force.
 //!
 //! Friction is a share of the normal force, and the constants say what share the estimator's finding stands for. They take
 //! an `F_z`, and no more of it: where none was measured, the design's own stands for it, as its curve, gains and offsets
@@ -16,7 +16,7 @@ use crate::solver::{Solver, Status};
 /// Frames of less than this share of the largest load that the design finds are rest: noise, or a touch.
 const REST: f64 = 0.02;
 
-/// Whether tangential forces are known, and no normal one but that of frames at rest.
+/// Whether tangential forces are known, and no normal one but that of unloaded frames.
 pub(super) fn is_all(measured: &Measured) -> bool {
     measured.forces.iter().all(|force| force[2].is_none_or(|normal| normal == 0.0))
         && measured.forces.iter().any(|force| force[0].is_some() || force[1].is_some())
