@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// A check that only simulations make: done is start, CYCLES later, in each cycle. Stops the simulation if it is not.
+// Assertion for simulations: done follows start by CYCLES cycles. A violation stops the simulation.
 
 `default_nettype none
 

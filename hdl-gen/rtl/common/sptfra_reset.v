@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The register that resets all of a core but its streams, which stop at once: one cycle later, for as many cycles. It
-// resets from power-up on, too.
+// Reset register of a core: delays the reset by one cycle. Set at power-up.
+//
+// The streams do not wait for it: they see the reset itself.
 
 `default_nettype none
 

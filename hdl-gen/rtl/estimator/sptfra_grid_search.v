@@ -19,7 +19,7 @@ module sptfra_grid_search #(
     parameter integer ROWS = 10,
     // Bits of u_q
     parameter integer DATA_BITS = 27,
-    // Points along an axis, 11 or 13
+    // Points along an axis, 11 or 13; the generator sets 13
     parameter integer SIDE = 13,
     // Points evaluated at a time: all of them, or SIDE
     parameter integer PARALLEL = SIDE * SIDE,

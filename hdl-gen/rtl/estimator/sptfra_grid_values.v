@@ -24,7 +24,7 @@ module sptfra_grid_values #(
     parameter integer DATA_BITS = 27,
     // Bits of the number of an orbit
     parameter integer ROW_WIDTH = 5,
-    // Points along an axis, 11 or 13
+    // Points along an axis, 11 or 13; the generator sets 13
     parameter integer SIDE = 13,
     // Points evaluated at a time: all of them, or SIDE
     parameter integer PARALLEL = SIDE * SIDE,

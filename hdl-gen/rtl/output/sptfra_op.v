@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Op: the estimator's answer to forces, and the frame out.
+// Op: last stage of a core, from the estimator's friction pair to the words of an answer.
 //
-// Two stations, each with a frame of its own: the summary (friction, resultants) and the output, which puts the field
-// together on the way out. The estimator stands before them.
+// Two pipeline stages, each with a frame of its own. The summary computes friction and resultants. The output computes
+// the field as it leaves.
 
 `default_nettype none
 

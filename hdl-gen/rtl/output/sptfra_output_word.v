@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// One word of each beat of a frame out: chooses the summary's word, or takes the field's, and makes a float32 of it.
+// Output word pipeline: selects one word of a beat, from the summary or the field, and converts it to float32.
 //
-// From the word's number to the beat: 9 enabled cycles. Names end in the cycles since the beat was issued, see
+// Latency from the word's number to the beat: 9 enabled cycles. Names end in the cycles since the beat was issued, see
 // sptfra_output.
 
 `default_nettype none
