@@ -213,7 +213,8 @@ WIDE          := $(addprefix designs/,sensor1-wide.toml sensor2-wide.toml)
 CLIPPED       := designs/sensor1-clipped-wide.toml $(TEST_DESIGNS)/sensor2-clipped-wide.toml
 AT_NOISE      := $(TARGET)/at-noise
 
-# What `calibrate` makes of the paper's sensors at each noise, and of a larger array, without further options.
+# What `calibrate` makes of the paper's sensors at each noise, of single frames (at) and of averages (smoothed), and of a
+# larger array, without further options.
 .PHONY: designs-at-noise
 designs-at-noise: build
 	@rm -rf $(AT_NOISE) && mkdir -p $(AT_NOISE)
@@ -221,10 +222,11 @@ designs-at-noise: build
 	@$(BIN)/sptfra new array_16x8 --dir $(AT_NOISE) --columns 16 --rows 8 --pitch-mm 3 --depth-mm 2.5 --tension read \
 	    --noise 1% > /dev/null
 	@set -e; cd $(AT_NOISE); calibrate() { \
-	    printf 'format = 3\nbase = "%s.toml"\n\n[sensor]\nnoise = %s\n' $$1 $$2 > one.toml; \
-	    $(abspath $(BIN))/sptfra calibrate one.toml --out $$1-at-$$2.toml; }; \
-	for design in sensor1-fast sensor2-fast; do for noise in 0.002 0.005 0.01 0.02; do calibrate $$design $$noise; done; done; \
-	calibrate array_16x8 0.01
+	    printf 'format = 3\nbase = "%s.toml"\n\n[sensor]\nnoise = %s\n%s\n' $$1 $$3 "$$4" > one.toml; \
+	    $(abspath $(BIN))/sptfra calibrate one.toml --out $$1-$$2-$$3.toml; }; \
+	for design in sensor1-fast sensor2-fast; do for noise in 0.002 0.005 0.01 0.02; do \
+	    calibrate $$design at $$noise; calibrate $$design smoothed $$noise 'smoothing = 4'; done; done; \
+	calibrate array_16x8 at 0.01
 
 .PHONY: tables
 tables: tools designs-at-noise ## Measure the tables of errors anew, into results/ (an hour and a half)
@@ -233,6 +235,7 @@ tables: tools designs-at-noise ## Measure the tables of errors anew, into result
 	    designs/sensor1-fast-100.toml $(WIDE) $(CLIPPED) --out results/noise.csv
 	@$(XTASK_RELEASE) study noise $(AT_NOISE)/*-at-*.toml --out results/noise-calibrated.csv
 	@$(XTASK_RELEASE) study smoothing $(FAST) $(WIDE) --out results/smoothing.csv
+	@$(XTASK_RELEASE) study smoothing $(AT_NOISE)/*-smoothed-*.toml --out results/smoothing-calibrated.csv
 	@$(XTASK_RELEASE) study confidence $(FAST) $(WIDE) $(CLIPPED) --out results/confidence.csv
 	@$(XTASK_RELEASE) study drift designs/sensor1-fast.toml designs/sensor1-wide.toml --out results/drift.csv
 	@$(CARGO) test -p sptfra-golden --test suite -- --ignored table clipped::kinds recorded::figures

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::ops::{Range, RangeInclusive};
 
-use golden::design::Design;
+use golden::design::{Design, Input};
 use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneError, SceneFrame, bound, normal};
 use golden::smoothing::{Average, Smoothing};
@@ -67,16 +67,22 @@ fn errors(design: &Design, frames: &[SceneFrame], percent: f64) -> Result<Quanti
     Ok(Quantiles::of(errors))
 }
 
-/// Errors of the tangential force where each contact is averaged over frames, for each of [`SMOOTHING`], in percent of the normal
-/// force, at a noise in percent.
-fn smoothed(design: &Design, frames: &[SceneFrame], percent: f64) -> Result<Vec<Quantiles>, SolverError> {
+/// Errors of the tangential force where each contact is averaged over frames with each key `smoothing`, in percent of the
+/// normal force, at a noise in percent.
+fn smoothed(
+    design: &Design,
+    frames: &[SceneFrame],
+    percent: f64,
+    smoothing: &[u32],
+) -> Result<Vec<Quantiles>, SolverError> {
     let solver = Solver::new(design)?;
     let tension = design.input.tension;
     let of_contact = |(index, frame): (usize, &SceneFrame)| -> Result<Vec<f64>, SolverError> {
         let mut random = ChaCha8Rng::seed_from_u64(SEEDS.start + index as u64);
         let largest = frame.stress.iter().fold(0.0_f64, |largest, stress| largest.max(tension.of(*stress).abs()));
-        let mut averages: Vec<(Option<Smoothing>, Average, Vec<f64>)> = SMOOTHING
-            .map(|k| ((k > 0).then(|| Smoothing::new(k, 0.01 * percent)), Average::default(), Vec::new()))
+        let mut averages: Vec<(Option<Smoothing>, Average, Vec<f64>)> = smoothing
+            .iter()
+            .map(|&k| ((k > 0).then(|| Smoothing::new(k, 0.01 * percent)), Average::default(), Vec::new()))
             .collect();
         for _ in 0..FRAMES {
             let mut read = frame.stress.clone();
@@ -99,13 +105,14 @@ fn smoothed(design: &Design, frames: &[SceneFrame], percent: f64) -> Result<Vec<
         averages.iter().map(error).collect()
     };
     let errors: Vec<Vec<f64>> = frames.par_iter().enumerate().map(of_contact).collect::<Result<_, _>>()?;
-    Ok((0..SMOOTHING.count()).map(|k| Quantiles::of(errors.iter().map(|of| of[k]).collect())).collect())
+    Ok((0..smoothing.len()).map(|k| Quantiles::of(errors.iter().map(|of| of[k]).collect())).collect())
 }
 
 /// The columns of [`smoothing_rows`].
 pub const SMOOTHING_COLUMNS: &str = "design,noise,k,frames,median,p95,bound";
 
-/// The table of smoothing of some designs, each with the bound of the median error on its sensor.
+/// The table of smoothing of some designs, each with the bound of the median error on its sensor. A design with `smoothing`,
+/// which is trained for it, is measured at its own noise: averaged as it says, and on single frames, as a restart leaves them.
 ///
 /// # Errors
 ///
@@ -115,8 +122,14 @@ pub fn smoothing_rows(designs: &[(String, Design)]) -> Result<String, NoiseError
     for (name, design) in designs {
         let [bound, _] = bound(&design.sensor, FRICTION, SEEDS)?;
         let frames = Kind::Sliding.frames(&design.sensor, FRICTION, SEEDS)?;
-        for percent in SMOOTHED_PERCENT {
-            for (k, Quantiles { median, most, .. }) in SMOOTHING.zip(smoothed(design, &frames, percent)?) {
+        let Input { noise, smoothing: own, .. } = design.input;
+        let (noises, smoothing) = match own {
+            0 => (SMOOTHED_PERCENT.to_vec(), SMOOTHING.collect()),
+            own => (vec![100.0 * noise], vec![0, own]),
+        };
+        for percent in noises {
+            let errors = smoothed(design, &frames, percent, &smoothing)?;
+            for (&k, Quantiles { median, most, .. }) in smoothing.iter().zip(errors) {
                 let count = 2_u32.pow(k + 1) - 1;
                 let bound = bound * percent / f64::from(count).sqrt();
                 let _ = writeln!(text, "{name},{percent},{k},{count},{median:.2},{most:.2},{bound:.2}");

@@ -155,11 +155,11 @@ pub fn calibrate(
     if design.algorithm.estimator != Estimator::Joint {
         return Err(CalibrateError::OtherEstimator { name: name() });
     }
-    // The contacts are in pascals, whatever the sensor counts.
-    let Input { tension, noise, .. } = design.input;
+    // The contacts are in pascals, whatever the sensor counts, and frames do not follow each other.
+    let Input { tension, noise, smoothing, .. } = design.input;
     let design = &Design { input: Input { tension, noise, ..Input::default() }, ..design.clone() };
     let half_window = contacts::half_window(&design.sensor);
-    let mut observer = Observer::new(design, half_window)?;
+    let mut observer = Observer::new(design, smoothing, half_window)?;
     let samples = samples::make(&mut observer, settings, tick)?;
     if samples.is_empty() {
         return Err(CalibrateError::NoAnswer { name: name(), samples: settings.samples });

@@ -9,6 +9,7 @@ use crate::estimators::standard_error::Marks;
 use crate::metrics::Quantiles;
 use crate::numbers::rounded;
 use crate::scene::{Kind, normal};
+use crate::smoothing::noise_left;
 use crate::solver::{Solver, Status};
 
 /// Frames, each of a contact of its own; the kinds in turn.
@@ -81,8 +82,8 @@ pub fn state_errors(design: &mut Design, seed: u64, tick: &mut dyn FnMut(Stage))
 }
 
 fn contacts(design: &Design, seed: u64, tick: &mut dyn FnMut(Stage)) -> Result<Vec<Contact>, CalibrateError> {
-    let Input { tension, noise, .. } = design.input;
-    // The contacts are in pascals, whatever the sensor counts.
+    let Input { tension, noise, smoothing, .. } = design.input;
+    // The contacts are in pascals, whatever the sensor counts, and each frame stands alone.
     let design = &Design { input: Input { tension, noise, ..Input::default() }, ..design.clone() };
     let solver = Solver::new(design)?;
     let columns = design.sensor.columns;
@@ -110,11 +111,13 @@ fn contacts(design: &Design, seed: u64, tick: &mut dyn FnMut(Stage)) -> Result<V
             let error = x.hypot(y) / found.resultant[2].abs();
             Ok(Some(Frame { error, noise, marks: Marks::of(&frame, columns) }))
         };
+        // Half of the rounds have the noise that an average leaves, half that of a frame after a restart.
+        let left = if (round / NOISES.len()).is_multiple_of(2) { noise_left(smoothing) } else { 1.0 };
         let inside = !matches!(kind, Kind::Border | Kind::Mixed);
         let expected = if inside { &EXPECTED_NOISES[..] } else { &[] };
         let error = |&noise: &f64| Ok::<_, CalibrateError>(frame(noise)?.map(|frame| frame.error));
         Ok(Contact {
-            frame: frame(NOISES[round % NOISES.len()] * noise.max(LEAST_NOISE))?,
+            frame: frame(NOISES[round % NOISES.len()] * left * noise.max(LEAST_NOISE))?,
             errors: expected.iter().map(error).collect::<Result<_, _>>()?,
         })
     };

@@ -300,7 +300,7 @@ mod tests {
                    [algorithm]\nestimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]\n";
         let design = Design::from_toml(pad, "pad.toml").unwrap();
         let settings = Settings { contacts: 40, samples: BATCH, ..Settings::default() };
-        let mut observer = Observer::new(&design, HALF_WINDOW).unwrap();
+        let mut observer = Observer::new(&design, 0, HALF_WINDOW).unwrap();
         let samples = samples::make(&mut observer, &settings, &mut |_| ()).unwrap();
         let basis = Basis::new(&samples, HALF_WINDOW, false);
         let learner = Learner::new(&basis, units, &mut ChaCha8Rng::seed_from_u64(1));

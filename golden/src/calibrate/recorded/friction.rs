@@ -153,7 +153,7 @@ fn samples(
         .correction
         .as_ref()
         .map_or_else(|| contacts::half_window(&design.sensor), |correction| correction.half_window);
-    let mut observer = Observer::new(&plain, half_window)?;
+    let mut observer = Observer::new(&plain, 0, half_window)?;
     let bare =
         Joint::new(&JointConstants { friction_correction: [0.0, 0.0], ..(**constants).clone() }, design.sensor.columns);
     let mut scratch = NetworkScratch::default();
