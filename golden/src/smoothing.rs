@@ -29,18 +29,20 @@ pub struct Average {
 pub struct Smoothing {
     weight: f64,
     limit: f64,
+    /// Stress of which `limit` is a share; `None`: the frame's largest.
+    typical_pa: Option<f64>,
 }
 
 impl Smoothing {
-    /// A weight of `2^-k`, with noise that is this share of a frame's largest reading.
-    pub fn new(k: u32, noise: f64) -> Self {
-        Self { weight: 0.5_f64.powi(k as i32), limit: RESTART * noise }
+    /// A weight of `2^-k`, with noise that is this share of a stress in pascals, or else of a frame's largest.
+    pub fn new(k: u32, noise: f64, typical_pa: Option<f64>) -> Self {
+        Self { weight: 0.5_f64.powi(k as i32), limit: RESTART * noise, typical_pa }
     }
 
     /// Takes a good frame into the average and puts the average in its place; returns the noise that is left in it, over that
     /// of a frame. Steps of `dead` taxels, whose noise is that of the sum in their place, restart nothing.
     pub fn take(&self, average: &mut Average, frame: &mut [f64], dead: &[usize]) -> f64 {
-        let limit = self.limit * magnitude(&*frame);
+        let limit = self.limit * self.typical_pa.unwrap_or_else(|| magnitude(&*frame));
         let pairs = average.stress.iter().zip(&*frame).enumerate();
         let mut living = pairs.filter(|(taxel, _)| !dead.contains(taxel));
         if average.stress.len() != frame.len() || living.any(|(_, (average, stress))| (stress - average).abs() > limit)

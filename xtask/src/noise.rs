@@ -82,7 +82,7 @@ fn smoothed(
         let largest = frame.stress.iter().fold(0.0_f64, |largest, stress| largest.max(tension.of(*stress).abs()));
         let mut averages: Vec<(Option<Smoothing>, Average, Vec<f64>)> = smoothing
             .iter()
-            .map(|&k| ((k > 0).then(|| Smoothing::new(k, 0.01 * percent)), Average::default(), Vec::new()))
+            .map(|&k| ((k > 0).then(|| Smoothing::new(k, 0.01 * percent, None)), Average::default(), Vec::new()))
             .collect();
         for _ in 0..FRAMES {
             let mut read = frame.stress.clone();

@@ -109,7 +109,7 @@ fn contacts(design: &Design, seed: u64, tick: &mut dyn FnMut(Stage)) -> Result<V
             }
             let [x, y] = [0, 1].map(|axis| found.resultant[axis] - scale * scene.force[axis]);
             let error = x.hypot(y) / found.resultant[2].abs();
-            Ok(Some(Frame { error, noise, marks: Marks::of(&frame, columns) }))
+            Ok(Some(Frame { error, noise, marks: Marks::of(&frame, columns, None) }))
         };
         // Half of the rounds have the noise that an average leaves, half that of a frame after a restart.
         let left = if (round / NOISES.len()).is_multiple_of(2) { noise_left(smoothing) } else { 1.0 };

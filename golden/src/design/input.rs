@@ -36,8 +36,10 @@ pub struct Input {
     /// Whether the sensor reads what pulls.
     pub tension: Tension,
     /// Standard deviation of a reading's noise, as a share of the frame's largest reading: `sptfra calibrate` trains at up to
-    /// 1.5 times this noise.
+    /// 1.5 times this noise. Where it was measured, the share in a typical contact.
     pub noise: f64,
+    /// The noise as measured, alike in every frame; `None`: each frame's is the share of its own largest reading.
+    pub measured_noise: Option<MeasuredNoise>,
     /// Share of the sums of its row and of its column that a taxel reads beside its own stress; 0: none.
     pub crosstalk: f64,
     /// Creep that is removed, if any.
@@ -56,11 +58,21 @@ impl Default for Input {
             room: 0,
             tension: Tension::default(),
             noise: DEFAULT_NOISE,
+            measured_noise: None,
             crosstalk: 0.0,
             creep: None,
             smoothing: 0,
         }
     }
+}
+
+/// Noise in the units of frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasuredNoise {
+    /// Standard deviation of a reading.
+    pub deviation: f64,
+    /// The largest reading of a typical contact.
+    pub largest: f64,
 }
 
 /// What a taxel reads that is pulled.
@@ -123,7 +135,16 @@ impl Input {
     /// The input of the same sensor whose frames are in pascals, one by one: what gains and curve have made of counts.
     pub(crate) fn of_pascals(&self) -> Self {
         let Self { ref dead, tension, noise, crosstalk, .. } = *self;
-        Self { dead: dead.clone(), tension, noise, crosstalk, ..Self::default() }
+        let measured_noise = self.measured_noise.map(|noise| {
+            let pascals = |value: f64| value * self.pa_per_count.unwrap_or(1.0).abs();
+            MeasuredNoise { deviation: pascals(noise.deviation), largest: pascals(noise.largest) }
+        });
+        Self { dead: dead.clone(), tension, noise, measured_noise, crosstalk, ..Self::default() }
+    }
+
+    /// The largest stress of a typical contact in pascals, whose share `noise` every frame has; `None`: a share of its own.
+    pub fn typical_pa(&self) -> Option<f64> {
+        self.measured_noise.map(|noise| noise.largest * self.pa_per_count.unwrap_or(1.0).abs())
     }
 
     /// Gain and offset of a taxel.
@@ -170,7 +191,19 @@ impl Input {
         dead.extend(gains.filter(|&(_, &gain)| gain == 0.0).map(|(taxel, _)| taxel));
         dead.sort_unstable();
         dead.dedup();
-        let noise = noise.share();
-        Ok(Self { pa_per_count, curve, calibration, dead, room, tension, noise, crosstalk, creep, smoothing })
+        let (noise, measured_noise) = (noise.share(), noise.measured());
+        Ok(Self {
+            pa_per_count,
+            curve,
+            calibration,
+            dead,
+            room,
+            tension,
+            noise,
+            measured_noise,
+            crosstalk,
+            creep,
+            smoothing,
+        })
     }
 }

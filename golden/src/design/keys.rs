@@ -9,7 +9,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    DEFAULT_NOISE, ExpectedError, FilterKind, Hardware, MAX_NOISE, MAX_SIDE, Outputs, PlanKind, Regularisation, Slip,
+    DEFAULT_NOISE, ExpectedError, FilterKind, Hardware, Input, MAX_NOISE, MAX_SIDE, MeasuredNoise, Outputs, PlanKind,
+    Regularisation, Slip,
 };
 use super::{Tension, TrainingSet};
 use crate::contacts;
@@ -72,9 +73,9 @@ pub(super) struct SensorKeys {
     #[schemars(extend("examples" = [{ "strength" : 0.4, "seconds" : 10.0, "frames_per_second" : 100.0 }]))]
     pub creep: Option<Creep>,
     /// The k of an exponential moving average of each taxel over the frames, with the weight 2^-k. A step of any taxel by more
-    /// than 6 standard deviations, `noise` times the frame's largest stress, restarts it. A frame that is short, not finite or
-    /// dropped leaves it as it was. With `scaling = "per_frame"` the core answers 4 cycles later, with `"fixed"` up to 28 on
-    /// 10 x 10 taxels. With `control = true` a register changes k.
+    /// than 6 standard deviations of the `noise` restarts it. A frame that is short, not finite or dropped leaves it as it was.
+    /// With `scaling = "per_frame"` the core answers 4 cycles later, with `"fixed"` by up to a quarter of the taxels and 3,
+    /// since the last reading may restart all. With `control = true` a register changes k.
     #[schemars(range(min = 1, max = 8), extend("examples" = [4]))]
     pub smoothing: Option<u32>,
     /// Pascals of one count, negative where larger counts press. Without this key or `curve`, frames hold pascals.
@@ -102,7 +103,8 @@ pub(super) struct SensorKeys {
 pub(super) enum NoiseKey {
     /// A share of the frame's largest reading.
     Share(#[schemars(range(min = 0.0, max = MAX_NOISE))] f64),
-    /// Pascals or counts, as the frames are. With a curve write the share that `sptfra check --unloaded --loaded` prints.
+    /// Pascals or counts, as the frames are, alike in every frame, so that light contacts have a larger error. With a curve
+    /// write the share that `sptfra check --unloaded --loaded` prints.
     Measured {
         /// Standard deviation of a reading, as `sptfra check --unloaded` measures it.
         #[schemars(range(min = 0.0))]
@@ -119,6 +121,22 @@ impl NoiseKey {
         match self {
             Self::Share(share) => share,
             Self::Measured { deviation, largest } => deviation / largest,
+        }
+    }
+
+    /// What was measured.
+    pub(super) fn measured(self) -> Option<MeasuredNoise> {
+        match self {
+            Self::Share(_) => None,
+            Self::Measured { deviation, largest } => Some(MeasuredNoise { deviation, largest }),
+        }
+    }
+
+    /// The key of an input.
+    pub(super) fn of(input: &Input) -> Self {
+        match input.measured_noise {
+            None => Self::Share(input.noise),
+            Some(MeasuredNoise { deviation, largest }) => Self::Measured { deviation, largest },
         }
     }
 }

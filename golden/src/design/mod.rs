@@ -48,7 +48,7 @@ pub use filter::{Choices, Filter, FilterKind, MatrixFilter, UnknownMatrixFilter}
 pub use hardware::{
     CalibrationIn, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise, Overrun, STREAM_BITS, Samples, Scaling,
 };
-pub use input::{DEFAULT_NOISE, Input, MAX_NOISE, Tension};
+pub use input::{DEFAULT_NOISE, Input, MAX_NOISE, MeasuredNoise, Tension};
 pub use joint::conditions;
 pub use read::syntax_position;
 pub use regularisation::Regularisation;
@@ -126,7 +126,7 @@ impl Design {
     /// How frames are averaged, if they are.
     pub fn smoothing(&self) -> Option<Smoothing> {
         let Input { smoothing, noise, .. } = self.input;
-        (smoothing > 0).then(|| Smoothing::new(smoothing, noise))
+        (smoothing > 0).then(|| Smoothing::new(smoothing, noise, self.input.typical_pa()))
     }
 
     /// Crosstalk of the sensor, if it has any.

@@ -137,7 +137,7 @@ pub(super) fn keys(design: &Design, names: &FileNames) -> DesignKeys {
             pitch_mm,
             depth_mm,
             tension: input.tension,
-            noise: NoiseKey::Share(input.noise),
+            noise: NoiseKey::of(input),
             crosstalk: Some(input.crosstalk).filter(|&share| share > 0.0),
             creep: input.creep,
             smoothing: Some(input.smoothing).filter(|&k| k > 0),

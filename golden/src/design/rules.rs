@@ -146,6 +146,18 @@ pub(super) fn input(check: &Check, design: &Design) -> Result<(), DesignError> {
                 format!("shear needs at most {} %: press harder, or use a quieter sensor", 100.0 * MAX_NOISE),
             ),
             (
+                input.measured_noise.is_some() && input.curve.is_some(),
+                "sensor.noise",
+                "is a deviation in counts, which a curve makes unlike at each stress".to_owned(),
+                "write the share that `sptfra check --unloaded --loaded` prints, noise = 0.01".to_owned(),
+            ),
+            (
+                input.typical_pa().is_some_and(|largest| largest > hardware.full_scale_pa),
+                "sensor.noise.largest",
+                format!("is {} Pa, beyond the full scale", input.typical_pa().unwrap_or(0.0)),
+                format!("write at most full_scale_pa = {}, or raise that", hardware.full_scale_pa),
+            ),
+            (
                 input.creep.is_some_and(|creep| !(fewest..=longest).contains(&creep.frames())),
                 "sensor.creep",
                 format!("has a time constant of {} frames", input.creep.map_or(0.0, |creep| creep.frames())),

@@ -3,7 +3,8 @@
 //!
 //! `s = |model, noise sigma max|b| / sum|b|, border e|`, where `e` is the share of `sum|b|` on taxels at the border beyond
 //! [`BORDER`], and `|x, y|` is [`added`]: the hardware takes the same steps. Three numbers of a design, fitted to contacts of
-//! all kinds by [`crate::calibrate::state_errors`].
+//! all kinds by [`crate::calibrate::state_errors`]. Where the noise was measured, a typical largest reading takes the place of
+//! `max|b|`: the deviation `sigma max|b|` is that of every frame.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -42,8 +43,8 @@ pub(crate) struct Marks {
 }
 
 impl Marks {
-    /// Of the stress `b`, in rows of `columns`.
-    pub(crate) fn of(b: &[f64], columns: usize) -> Self {
+    /// Of the stress `b`, in rows of `columns`, with noise in proportion to its largest, or to that of a typical contact.
+    pub(crate) fn of(b: &[f64], columns: usize, typical_pa: Option<f64>) -> Self {
         let (mut largest, mut sum, mut border) = (0.0_f64, 0.0, 0.0);
         let rows = b.len() / columns;
         for (taxel, stress) in b.iter().enumerate() {
@@ -55,7 +56,7 @@ impl Marks {
             }
         }
         let share = |part: f64| if sum > 0.0 { part / sum } else { 0.0 };
-        Self { peak: share(largest), border: (share(border) - BORDER).max(0.0) }
+        Self { peak: share(typical_pa.unwrap_or(largest)), border: (share(border) - BORDER).max(0.0) }
     }
 }
 
@@ -73,6 +74,7 @@ impl StandardError {
 pub(crate) struct Confidence {
     of: StandardError,
     noise: f64,
+    typical_pa: Option<f64>,
     columns: usize,
     /// A frame with a larger one has low confidence.
     pub(crate) most: f64,
@@ -82,13 +84,13 @@ impl Confidence {
     /// That of a design, if its standard error was fitted.
     pub(crate) fn of(design: &Design) -> Option<Self> {
         let Algorithm { standard_error, max_standard_error: most, .. } = &design.algorithm;
-        let (noise, columns) = (design.input.noise, design.sensor.columns);
-        standard_error.map(|of| Self { of, noise, columns, most: *most })
+        let (noise, typical_pa, columns) = (design.input.noise, design.input.typical_pa(), design.sensor.columns);
+        standard_error.map(|of| Self { of, noise, typical_pa, columns, most: *most })
     }
 
     /// The standard error over `|F_z|` of the stress `b`, in which this much is left of a frame's noise.
     pub(crate) fn share(&self, b: &[f64], noise_left: f64) -> f64 {
-        self.of.share(self.noise * noise_left, Marks::of(b, self.columns))
+        self.of.share(self.noise * noise_left, Marks::of(b, self.columns, self.typical_pa))
     }
 }
 
@@ -123,13 +125,16 @@ mod tests {
         let of = StandardError { model: 0.03, noise: 100.0, border: 1.0 };
         let middle: Vec<f64> = (0..25).map(|taxel| if taxel == 12 { -4.0 } else { 0.0 }).collect();
         let edge: Vec<f64> = (0..25).map(|taxel| if taxel == 10 { -4.0 } else { 0.0 }).collect();
-        let [middle, edge] = [middle, edge].map(|b| Marks::of(&b, 5));
+        let [middle, edge] = [middle, edge].map(|b| Marks::of(&b, 5, None));
         assert_eq!(middle, Marks { peak: 1.0, border: 0.0 });
         assert_eq!(edge, Marks { peak: 1.0, border: 1.0 - BORDER });
         assert!((of.share(0.0, middle) - 0.03).abs() < 1e-12);
         assert!((of.share(0.01, middle) - added(0.03, 1.0)).abs() < 1e-12);
         assert!(of.share(0.0, edge) > 0.9);
+        // Measured noise is as large under a light contact: twice the share where it reads half.
+        let light: Vec<f64> = (0..25).map(|taxel| if taxel == 12 { -2.0 } else { 0.0 }).collect();
+        assert_eq!(Marks::of(&light, 5, Some(4.0)), Marks { peak: 2.0, border: 0.0 });
         // Nothing at all has no share.
-        assert_eq!(Marks::of(&[0.0; 25], 5), Marks { peak: 0.0, border: 0.0 });
+        assert_eq!(Marks::of(&[0.0; 25], 5, None), Marks { peak: 0.0, border: 0.0 });
     }
 }

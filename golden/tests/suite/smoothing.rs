@@ -20,7 +20,7 @@ fn noisy(random: &mut ChaCha8Rng) -> Vec<f64> {
 fn noise_alone_hardly_ever_restarts() {
     const FRAMES: usize = 40_000;
     for k in [1, 2, 4, 8] {
-        let smoothing = Smoothing::new(k, NOISE);
+        let smoothing = Smoothing::new(k, NOISE, None);
         let (mut average, mut random) = (Average::default(), ChaCha8Rng::seed_from_u64(7));
         let mut restarts = 0;
         let (mut squares, mut count) = (0.0, 0.0);
@@ -48,7 +48,7 @@ fn noise_alone_hardly_ever_restarts() {
 fn the_noise_left_is_known_from_the_restart_on() {
     let mut random = ChaCha8Rng::seed_from_u64(9);
     for k in [1, 2, 4] {
-        let smoothing = Smoothing::new(k, NOISE);
+        let smoothing = Smoothing::new(k, NOISE, None);
         let (mut squares, mut said) = ([0.0; 12], [0.0; 12]);
         for _ in 0..500 {
             let mut average = Average::default();
@@ -69,7 +69,7 @@ fn the_noise_left_is_known_from_the_restart_on() {
 #[test]
 fn a_step_is_followed_at_once_or_within_its_frames() {
     for k in 1..=8 {
-        let smoothing = Smoothing::new(k, NOISE);
+        let smoothing = Smoothing::new(k, NOISE, None);
         let mut average = Average::default();
         let mut take = |stress: f64| {
             let mut frame = [stress, -1.0];

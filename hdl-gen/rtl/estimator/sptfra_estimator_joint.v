@@ -35,6 +35,7 @@ module sptfra_estimator_joint #(
     parameter [17:0] ERROR_MODEL = 18'd0,
     parameter [16:0] ERROR_NOISE = 17'd0,
     parameter [16:0] ERROR_BORDER = 17'd0,
+    parameter [22:0] ERROR_LARGEST = 23'd0,
     parameter integer ERROR_AVERAGED = 0,
     // 1: with a correction; the parameters from here to ROM_NAME are its own
     parameter integer NETWORK = 0,
@@ -88,6 +89,7 @@ module sptfra_estimator_joint #(
     input  wire [26:0] largest,
     input  wire [39:0] border,
     input  wire [24:0] variance,
+    input  wire [4:0] exponent,
     input  wire [5:0] flags_in, // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
     // One cycle: the place of a frame's u_q is free
     output wire u_released,
@@ -242,21 +244,24 @@ module sptfra_estimator_joint #(
                 .MODEL    (ERROR_MODEL),
                 .NOISE    (ERROR_NOISE),
                 .BORDER   (ERROR_BORDER),
+                .LARGEST  (ERROR_LARGEST),
                 .AVERAGED (ERROR_AVERAGED)
             ) standard_error (
-                .clock      (clock),
-                .reset      (reset),
-                .start      (search_start),
-                .stress_sum (stress_sum),
-                .largest    (largest),
-                .border     (border),
-                .variance   (variance),
-                .error_log  (found_error)
+                .clock          (clock),
+                .reset          (reset),
+                .start          (search_start),
+                .stress_sum     (stress_sum),
+                .largest        (largest),
+                .frame_exponent (exponent),
+                .border         (border),
+                .variance       (variance),
+                .error_log      (found_error)
             );
         end else begin : gen_no_error
             assign found_error = 18'sd0;
 
-            wire _unused_error = &{1'b0, border, variance, ERROR_MODEL, ERROR_NOISE, ERROR_BORDER, ERROR_AVERAGED != 0};
+            wire _unused_error = &{1'b0, border, variance, exponent, ERROR_MODEL, ERROR_NOISE, ERROR_BORDER,
+                ERROR_LARGEST, ERROR_AVERAGED != 0};
         end
     endgenerate
 

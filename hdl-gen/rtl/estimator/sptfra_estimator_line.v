@@ -31,6 +31,7 @@ module sptfra_estimator_line #(
     parameter [17:0] ERROR_MODEL = 18'd0,
     parameter [16:0] ERROR_NOISE = 17'd0,
     parameter [16:0] ERROR_BORDER = 17'd0,
+    parameter [22:0] ERROR_LARGEST = 23'd0,
     parameter integer ERROR_AVERAGED = 0,
     // From the direction to the line, checked in simulation; 0: unchecked
     parameter integer EXPECTED_LINE_LATENCY = 0,
@@ -61,6 +62,7 @@ module sptfra_estimator_line #(
     input  wire [26:0] largest,
     input  wire [39:0] border,
     input  wire [24:0] variance,
+    input  wire [4:0] exponent,
     input  wire [5:0] flags_in, // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
     // One cycle: the place of a frame's u_q is free
     output wire u_released,
@@ -114,6 +116,7 @@ module sptfra_estimator_line #(
     reg [26:0] line_largest;
     reg [39:0] line_border;
     reg [24:0] line_variance;
+    reg [4:0] line_exponent;
     reg [5:0] line_flags;
 
     always @(posedge clock) begin
@@ -122,6 +125,7 @@ module sptfra_estimator_line #(
             line_largest <= largest;
             line_border <= border;
             line_variance <= variance;
+            line_exponent <= exponent;
             line_flags <= flags_in;
         end
     end
@@ -238,24 +242,26 @@ module sptfra_estimator_line #(
                 .MODEL    (ERROR_MODEL),
                 .NOISE    (ERROR_NOISE),
                 .BORDER   (ERROR_BORDER),
+                .LARGEST  (ERROR_LARGEST),
                 .AVERAGED (ERROR_AVERAGED)
             ) standard_error (
-                .clock      (clock),
-                .reset      (reset),
-                .start      (search_start),
-                .stress_sum (line_stress_sum),
-                .largest    (line_largest),
-                .border     (line_border),
-                .variance   (line_variance),
-                .error_log  (found_error)
+                .clock          (clock),
+                .reset          (reset),
+                .start          (search_start),
+                .stress_sum     (line_stress_sum),
+                .largest        (line_largest),
+                .frame_exponent (line_exponent),
+                .border         (line_border),
+                .variance       (line_variance),
+                .error_log      (found_error)
             );
 
             assign error_log = unknown ? 18'sd0 : found_error; // without a direction as much as presses
         end else begin : gen_no_error
             assign error_log = 18'sd0;
 
-            wire _unused = &{1'b0, line_largest, line_border, line_variance, ERROR_MODEL, ERROR_NOISE, ERROR_BORDER,
-                ERROR_AVERAGED != 0};
+            wire _unused = &{1'b0, line_largest, line_border, line_variance, line_exponent, ERROR_MODEL, ERROR_NOISE,
+                ERROR_BORDER, ERROR_LARGEST, ERROR_AVERAGED != 0};
         end
     endgenerate
 

@@ -4,6 +4,7 @@
 // Standard error of the tangential force over |F_z|, as a logarithm: model, noise and border, added as squares.
 //
 // s = |MODEL, NOISE left largest / stress_sum, BORDER e|. e is the share of stress at the grid's border beyond 1/32.
+// Noise that is alike in all frames has a typical contact's LARGEST, scaled as the frame is, in place of largest.
 // |x, y| is max(x, y, 7/8 of the larger + 1/2 of the smaller). No multiplier: each bit of a quotient adds its weight.
 // The noise left is the root of the variance; its bits, as they are found, add up NOISE. Without averages it is 1.
 // Latency: 55 cycles from start to the result, which holds until the next start.
@@ -16,6 +17,8 @@ module sptfra_standard_error #(
     // Errors by noise and by stress at the border, as the header multiplies them, with 13 fraction bits
     parameter [16:0] NOISE = 17'd0,
     parameter [16:0] BORDER = 17'd0,
+    // A sixteenth of the largest stress of a typical contact, 0: noise is a share of each frame's own
+    parameter [22:0] LARGEST = 23'd0,
     // 1: frames are averaged
     parameter AVERAGED = 0
 ) (
@@ -24,6 +27,7 @@ module sptfra_standard_error #(
     input  wire start, // with these
     input  wire [39:0] stress_sum, // sum |b|
     input  wire [26:0] largest, // max |b|
+    input  wire [4:0] frame_exponent, // the frame is scaled by 2 to the power of it
     input  wire [39:0] border, // sum |b| of the taxels at the border
     input  wire [24:0] variance, // of the noise left in an average, 24 fraction bits
     output reg  signed [17:0] error_log // of base 2, from -10 to 2, 12 fraction bits: n + f for 2^n (1 + f)
@@ -38,7 +42,7 @@ module sptfra_standard_error #(
     // ---- Two quotients, the border's first, a bit a cycle: remainder, and the sum of the weights
     reg [39:0] divisor;
     reg [40:0] remainder;
-    reg [26:0] peak;
+    wire [40:0] peak; // below twice the divisor
     wire [16:0] noise; // its weight in this frame
     reg [33:0] sum;
     wire [41:0] less = {1'b0, remainder} - {2'b00, divisor};
@@ -47,6 +51,40 @@ module sptfra_standard_error #(
     wire [16:0] weight = (step > BORDER_END) ? noise : BORDER;
     wire [33:0] next_sum = {sum[32:0], 1'b0} + (fits ? {17'd0, weight} : 34'd0);
     wire [39:0] allowed = {5'd0, divisor[39:5]};
+
+    // ---- What the noise is a share of, and what it comes to
+    wire [22:0] by_noise;
+    generate
+        if (LARGEST != 23'd0) begin : gen_typical
+            reg [53:0] scaled;
+            wire [40:0] most = {divisor, 1'b0} - 41'd1;
+
+            assign peak = (scaled > {13'd0, most}) ? most : scaled[40:0];
+            // A quotient of sixteenths; 64 |F_z| are as good as more
+            assign by_noise = (next_sum[33:31] != 3'd0) ? 23'h3fffff : {1'b0, next_sum[30:9]};
+
+            always @(posedge clock) begin
+                if (start) begin
+                    scaled <= {31'd0, LARGEST} << frame_exponent;
+                end
+            end
+
+            wire _unused_largest = &{1'b0, largest};
+        end else begin : gen_own
+            reg [26:0] held;
+
+            assign peak = {14'd0, held};
+            assign by_noise = {2'd0, next_sum[33:13]};
+
+            always @(posedge clock) begin
+                if (start) begin
+                    held <= largest;
+                end
+            end
+
+            wire _unused_exponent = &{1'b0, frame_exponent};
+        end
+    endgenerate
 
     // ---- Two errors added, then with the third: each in three cycles, for short paths
     reg [22:0] share_noise;
@@ -67,7 +105,6 @@ module sptfra_standard_error #(
             busy <= 1'b1;
             step <= 6'd0;
             divisor <= stress_sum;
-            peak <= largest;
             remainder <= {1'b0, border};
             total <= {5'd0, MODEL};
         end else if (busy) begin
@@ -81,10 +118,10 @@ module sptfra_standard_error #(
             if (step == BORDER_END) begin
                 share_border <= {2'd0, next_sum[33:13]};
                 sum <= 34'd0;
-                remainder <= {14'd0, peak};
+                remainder <= peak;
             end
             if (step == NOISE_END) begin
-                share_noise <= {2'd0, next_sum[33:13]};
+                share_noise <= by_noise;
             end
             if ((step == ADD) || (step == ADD + 6'd3)) begin
                 larger <= is_larger ? total : other;

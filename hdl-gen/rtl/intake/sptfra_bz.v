@@ -48,6 +48,7 @@ module sptfra_bz #(
     parameter [59:0] CROSSTALK = 60'd0,
     parameter [45:0] CREEP = 46'd0,
     parameter [22:0] SMOOTHING = 23'd0,
+    parameter [26:0] SMOOTHING_LARGEST = 27'd0, // see sptfra_smoothing
     // Prefix of the ROM file names, and what they begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
@@ -317,6 +318,7 @@ module sptfra_bz #(
         .CROSSTALK         (CROSSTALK),
         .CREEP             (CREEP),
         .SMOOTHING         (SMOOTHING),
+        .SMOOTHING_LARGEST (SMOOTHING_LARGEST),
         .ROM_DIR           (ROM_DIR),
         .ROM_NAME          (ROM_NAME)
     ) writer (

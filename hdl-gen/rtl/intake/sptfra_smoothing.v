@@ -18,6 +18,8 @@ module sptfra_smoothing #(
     // A step beyond FACTOR / 2^FRACTION of the frame's largest stress restarts the average
     parameter FRACTION = 21,
     parameter [16:0] FACTOR = 17'd62915,
+    // Of this stress in place of the frame's largest, unless it is 0
+    parameter [26:0] LARGEST = 27'd0,
     // Derived
     parameter FLAGS = 2 * SAMPLES + 1
 ) (
@@ -171,7 +173,7 @@ module sptfra_smoothing #(
         .clock       (clock),
         .enable      (1'b1),
         .coefficient ({1'b0, FACTOR}),
-        .data        (most),
+        .data        ((LARGEST != 27'd0) ? LARGEST : most),
         .product     (product)
     );
 

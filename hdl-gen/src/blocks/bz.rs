@@ -58,7 +58,10 @@ pub fn parameters(plan: &Plan) -> Parameters {
         })
         .some(plan.crosstalk.as_ref(), |all, of| all.unsigned("CROSSTALK", crosstalk::PARAMETER_BITS, of.bits()))
         .some(plan.creep.as_ref(), |all, of| all.unsigned("CREEP", creep::PARAMETER_BITS, of.bits()))
-        .some(plan.smoothing.as_ref(), |all, of| all.unsigned("SMOOTHING", WITH_FRACTION, of.restart.bits()))
+        .some(plan.smoothing.as_ref(), |all, of| {
+            all.unsigned("SMOOTHING", WITH_FRACTION, of.restart.bits())
+                .some(of.largest, |all, largest| all.unsigned("SMOOTHING_LARGEST", LONG_BITS, largest as u64))
+        })
         .some(plan.calibration.as_ref(), of_calibration)
         .signed("STRESS_BOUND", LONG_BITS, stress.bound)
         .when(in_rom, |all| all.outer("ROM_DIR").text("ROM_NAME", &plan.design.name))

@@ -117,7 +117,7 @@ impl SharedPlan {
             dead: self.dead.clone(),
             crosstalk: CrosstalkPlan::new(design),
             creep: CreepPlan::new(design),
-            smoothing: SmoothingPlan::new(design),
+            smoothing: SmoothingPlan::new(design, stress),
             thresholds: self.thresholds,
             estimator,
             operands: OperandLayout::new(&self.products, elements, channels as u32 * hardware.data_bits),
@@ -182,6 +182,6 @@ fn thresholds(design: &Design, stress: Format) -> Result<Thresholds, PlanError> 
         // Never 0: that friction of 0 slips is no limit's meaning.
         [limit, limit - hysteresis].map(|friction| ((friction * pow2(FRICTION_FRACTION as i32)).round() as i64).max(1))
     });
-    let error = StandardErrorPlan::of(design);
+    let error = StandardErrorPlan::of(design, stress);
     Ok(Thresholds { taxel, contact, slip, error, thin: design.thin_layer().is_some() })
 }

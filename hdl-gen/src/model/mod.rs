@@ -330,7 +330,7 @@ fn scalars(
     let mut is_uncertain = plan.thresholds.thin;
     if let Some(of) = &plan.thresholds.error {
         // Without a direction the error is as much as presses.
-        let log = if estimate.unknown { 0 } else { of.log(&contact, scaled.variance) };
+        let log = if estimate.unknown { 0 } else { of.log(&contact, scaled.exponent, scaled.variance) };
         let (error, exponent) = summary.standard_error(log);
         put(words::STANDARD_ERROR, &[error], plan.formats.g.lsb - friction + exponent);
         is_uncertain |= log > of.limit;

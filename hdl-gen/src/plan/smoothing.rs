@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::factor::Factor;
 use crate::cores::LONG_BITS;
+use crate::format::{Format, pow2};
 
 /// Largest rate.
 pub const MOST_RATE: u32 = 8;
@@ -25,6 +26,8 @@ pub struct SmoothingPlan {
     pub rate: u32,
     /// A step beyond so many times the largest stress, cut to whole steps, restarts the average.
     pub restart: Factor,
+    /// Of this stress in place of the frame's largest, where the noise was measured.
+    pub largest: Option<i64>,
 }
 
 /// The average of the frames so far.
@@ -44,9 +47,13 @@ impl Default for Average {
 
 impl SmoothingPlan {
     /// That of a design, if it averages frames.
-    pub fn new(design: &Design) -> Option<Self> {
+    pub fn new(design: &Design, stress: Format) -> Option<Self> {
         let input = &design.input;
-        (input.smoothing > 0).then(|| Self { rate: input.smoothing, restart: Factor::new(RESTART * input.noise) })
+        (input.smoothing > 0).then(|| Self {
+            rate: input.smoothing,
+            restart: Factor::new(RESTART * input.noise),
+            largest: input.typical_pa().map(|pascals| ((pascals * pow2(-stress.lsb)).round() as i64).max(1)),
+        })
     }
 
     /// Takes a good frame into the average, with the weight `2^-rate`, and puts the average in its place. Steps of `replaced`
@@ -54,7 +61,7 @@ impl SmoothingPlan {
     pub fn take(&self, rate: u32, average: &mut Average, stress: &mut [i64], replaced: &[usize]) {
         let Average { stress: average, variance } = average;
         let most = stress.iter().fold(0, |most, stress| most.max(stress.abs()));
-        let limit = self.restart.times(most);
+        let limit = self.restart.times(self.largest.unwrap_or(most));
         let exact = |stress: i64| (stress << FRACTION) + HALF;
         let is_far = |(taxel, (average, stress)): (usize, (&i64, &i64))| {
             let step = (exact(*stress) - average) >> FRACTION;
@@ -86,7 +93,8 @@ mod tests {
     fn plan() -> SmoothingPlan {
         let text = "format = 3\nname = \"pad\"\n[algorithm]\nestimator = \"line\"\n[sensor]\ncolumns = 6\nrows = 5\n\
                     pitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\nnoise = 0.1\nsmoothing = 4";
-        SmoothingPlan::new(&Design::from_toml(text, "pad.toml").unwrap()).unwrap()
+        let stress = Format { bits: LONG_BITS, lsb: 0, bound: largest(LONG_BITS) };
+        SmoothingPlan::new(&Design::from_toml(text, "pad.toml").unwrap(), stress).unwrap()
     }
 
     fn stress() -> impl Strategy<Value = Vec<i64>> {
@@ -143,6 +151,18 @@ mod tests {
             let second = vec![from, -from, step, 1];
             let mut found = second.clone();
             plan.take(rate, &mut average, &mut found, &[]);
+            // Measured noise has one limit, however much presses.
+            let measured = SmoothingPlan { largest: Some(from), ..plan.clone() };
+            for scale in [1, 3] {
+                let (mut average, mut second) = (Average::default(), [scale * from, 0, scale * from + step, 0]);
+                measured.take(rate, &mut average, &mut [scale * from, 0, scale * from, 0], &[]);
+                measured.take(rate, &mut average, &mut second, &[]);
+                if share > 1.0 + 1e-2 {
+                    prop_assert_eq!(second[2], scale * from + step);
+                } else if share < 1.0 - 1e-2 && step > 1 {
+                    prop_assert!(second[2] < scale * from + step, "{}", scale);
+                }
+            }
             if share > 1.0 + 1e-2 {
                 prop_assert_eq!(found, second);
             } else if share < 1.0 - 1e-2 && step > 1 {

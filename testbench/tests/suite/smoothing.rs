@@ -5,7 +5,7 @@ use crate::support::resets::{self, judged};
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint};
 use golden::creep::Creep;
 use golden::dead_taxels::DeadTaxels;
-use golden::design::{Design, Outputs, Overrun, PlanKind, Samples, Scaling};
+use golden::design::{Design, MeasuredNoise, Outputs, Overrun, PlanKind, Samples, Scaling};
 use golden::estimators::StandardError;
 use golden::scene::normal;
 use golden::solver::{Solution, Solver};
@@ -27,7 +27,7 @@ const CREEP: Creep = Creep { strength: 0.4, seconds: 0.03, frames_per_second: 10
 /// Most of it is noise.
 const ERROR: StandardError = StandardError { model: 0.002, noise: 30.0, border: 0.05 };
 
-/// Both plans and estimators, both scalings, smoothing, creep or both, dead taxels and crosstalk, integers, beats of several
+/// Both plans and estimators, both scalings, noise as a share and as measured, smoothing, creep or both, dead taxels and crosstalk, integers, beats of several
 /// samples at once and one by one.
 fn designs() -> Vec<Design> {
     let [paper, reduced] = [PlanKind::Paper, PlanKind::Reduced];
@@ -51,9 +51,11 @@ fn designs() -> Vec<Design> {
     counts.algorithm.standard_error = Some(ERROR);
     (counts.sensor.columns, counts.sensor.rows) = (3, 5);
     counts.input.pa_per_count = Some(-12.5);
+    counts.input.measured_noise = Some(MeasuredNoise { deviation: NOISE * 4000.0, largest: 4000.0 });
     counts.hardware.samples = Samples::Int16;
     counts.hardware.stream_bits = 64;
-    let fixed = small("fixed", paper, Outputs::Field, Scaling::Fixed, 4);
+    let mut fixed = small("fixed", paper, Outputs::Field, Scaling::Fixed, 4);
+    fixed.input.measured_noise = Some(MeasuredNoise { deviation: NOISE * 3e4, largest: 3e4 });
     // Three samples in the last beat of four.
     let mut wide = small("wide", reduced, Outputs::Field, Scaling::Fixed, 2);
     (wide.sensor.columns, wide.sensor.rows) = (3, 5);

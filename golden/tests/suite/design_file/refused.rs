@@ -62,6 +62,18 @@ fn crosstalk_and_smoothing_in_their_ranges() {
     refused(&sensor("noise = { deviation = 12.0 }"), &["sensor.noise", "largest"]);
     let noise = |keys: &str| Design::from_toml(&sensor(keys), "pad.toml").unwrap().input.noise.to_bits();
     assert_eq!(noise("noise = { deviation = 12.0, largest = 4000.0 }"), noise("noise = 0.003"));
+    let measured = "noise = { deviation = 12.0, largest = 4000.0 }";
+    refused(
+        &sensor(&format!("{measured}\ncurve = {{ power = 1.2, scale = -0.01 }}")),
+        &["sensor.noise", "noise = 0.01"],
+    );
+    refused(
+        &sensor(&format!("{measured}\npa_per_count = -100")),
+        &["sensor.noise.largest", "400000 Pa", "full_scale_pa"],
+    );
+    let design = Design::from_toml(&sensor(&format!("{measured}\npa_per_count = -2")), "pad.toml").unwrap();
+    assert_eq!(design.input.typical_pa(), Some(8000.0));
+    assert_eq!(Design::from_toml(&design.to_toml(), "resolved").unwrap(), design);
     refused(&sensor("smoothing = 4\nnoise = 0"), &["sensor.smoothing", "sensor.noise is 0", "check --unloaded"]);
     let creep = |strength: &str, seconds: &str| {
         sensor(&format!("creep = {{ strength = {strength}, seconds = {seconds}, frames_per_second = 100.0 }}"))

@@ -4,8 +4,8 @@ use std::env;
 
 use golden::creep::Creep;
 use golden::design::{
-    Calibration, CalibrationIn, Correction, Curve, Design, JointConstants, Kernel, Optimise, Outputs, Overrun,
-    Regularisation, Samples, Scaling, Sensor, Slip, StandardError, Tension,
+    Calibration, CalibrationIn, Correction, Curve, Design, JointConstants, Kernel, MeasuredNoise, Optimise, Outputs,
+    Overrun, Regularisation, Samples, Scaling, Sensor, Slip, StandardError, Tension,
 };
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
@@ -260,6 +260,10 @@ fn with_every_key(mut design: Design, random: &mut ChaCha8Rng) -> Result<Design,
     }
     if random.random_bool(0.3) {
         (input.smoothing, input.noise) = (random.random_range(1..=8), 0.1);
+    }
+    if input.curve.is_none() && design.sensor.columns % 2 == 1 {
+        let largest = 0.3 * hardware.full_scale_pa / input.pa_per_count.unwrap_or(1.0).abs();
+        input.measured_noise = Some(MeasuredNoise { deviation: input.noise * largest, largest });
     }
     let files = design.files();
     let files: Vec<(&str, String)> = files.iter().map(|(name, text)| (*name, text.clone())).collect();

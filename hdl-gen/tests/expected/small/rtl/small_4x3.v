@@ -506,6 +506,7 @@ module small_4x3 #(
         .largest         (largest),
         .border          (border),
         .variance        (direction_variance),
+        .exponent        (direction_exponent),
         .flags_in        (frame_flags),
         .u_released      (u_released),
         .answer_valid    (answer_valid),
