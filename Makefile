@@ -229,7 +229,7 @@ designs-at-noise: build
 	calibrate array_16x8 at 0.01
 
 .PHONY: tables
-tables: tools designs-at-noise ## Measure the tables of errors anew, into results/ (an hour and a half)
+tables: tools designs-at-noise ## Measure the tables of errors anew, into results/ (two hours)
 	@$(CARGO) build --quiet --release -p xtask
 	@$(XTASK_RELEASE) study noise $(FAST) designs/sensor1-fast-64.toml \
 	    designs/sensor1-fast-100.toml $(WIDE) $(CLIPPED) --out results/noise.csv

@@ -36,7 +36,7 @@ pub struct Input {
     /// Whether the sensor reads what pulls.
     pub tension: Tension,
     /// Standard deviation of a reading's noise, as a share of the frame's largest reading: `sptfra calibrate` trains at up to
-    /// 1.5 times this noise. Where it was measured, the share in a typical contact.
+    /// 1.5 times this noise, or of what `smoothing` leaves of it. Where it was measured, the share in a typical contact.
     pub noise: f64,
     /// The noise as measured, alike in every frame; `None`: each frame's is the share of its own largest reading.
     pub measured_noise: Option<MeasuredNoise>,

@@ -61,7 +61,7 @@ pub(super) struct SensorKeys {
     #[serde(default)]
     pub tension: Tension,
     /// Standard deviation of a reading's noise, as a share of the frame's largest reading. `sptfra calibrate` trains at up to
-    /// 1.5 times this noise.
+    /// 1.5 times this noise, or of what `smoothing` leaves of it.
     #[serde(default)]
     pub noise: NoiseKey,
     /// Crosstalk of a row-column array: each taxel reads its stress plus this share of the sum of its row and of its column, the
