@@ -9,9 +9,8 @@
 `default_nettype none
 
 module sptfra_estimator_joint #(
-    // Taxels along x
+    // Taxels along x and y
     parameter integer COLUMNS = 10,
-    // Taxels along y
     parameter integer ROWS = 10,
     // Taxels that arrive at a time: 4, the images of an orbit
     parameter integer CHANNELS = 4,

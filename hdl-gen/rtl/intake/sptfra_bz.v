@@ -47,8 +47,7 @@ module sptfra_bz #(
     // Crosstalk, creep: see sptfra_frame_corrections. Smoothing: see sptfra_frame_writer
     parameter [59:0] CROSSTALK = 60'd0,
     parameter [45:0] CREEP = 46'd0,
-    parameter [22:0] SMOOTHING = 23'd0,
-    parameter [26:0] SMOOTHING_LARGEST = 27'd0, // see sptfra_smoothing
+    parameter [49:0] SMOOTHING = 50'd0,
     // Prefix of the ROM file names, and what they begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
@@ -318,7 +317,6 @@ module sptfra_bz #(
         .CROSSTALK         (CROSSTALK),
         .CREEP             (CREEP),
         .SMOOTHING         (SMOOTHING),
-        .SMOOTHING_LARGEST (SMOOTHING_LARGEST),
         .ROM_DIR           (ROM_DIR),
         .ROM_NAME          (ROM_NAME)
     ) writer (

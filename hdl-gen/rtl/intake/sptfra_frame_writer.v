@@ -31,9 +31,8 @@ module sptfra_frame_writer #(
     // Crosstalk, creep: see sptfra_frame_corrections
     parameter [59:0] CROSSTALK = 60'd0,
     parameter [45:0] CREEP = 46'd0,
-    // {fraction bits of the factor, factor} of a step that restarts the average, 0 without any: see sptfra_smoothing
-    parameter [22:0] SMOOTHING = 23'd0,
-    parameter [26:0] SMOOTHING_LARGEST = 27'd0, // see sptfra_smoothing
+    // {stress, fraction bits of the factor, factor} of a step that restarts the average, 0: none; see sptfra_smoothing
+    parameter [49:0] SMOOTHING = 50'd0,
     // Prefix of the ROM file names, and what they begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
@@ -155,7 +154,7 @@ module sptfra_frame_writer #(
                 .SAMPLES  (SAMPLES),
                 .FRACTION (SMOOTHING[22:17]),
                 .FACTOR   (SMOOTHING[16:0]),
-                .LARGEST  (SMOOTHING_LARGEST)
+                .LARGEST  (SMOOTHING[49:23])
             ) smoothing_of_frames (
                 .clock          (clock),
                 .reset          (reset),
@@ -185,7 +184,7 @@ module sptfra_frame_writer #(
             assign {stresses, saturated, not_finite} = {corrected, corrected_saturated, corrected_not_finite};
             assign {smoothing_busy, settled, averaged} = {1'b0, ended, 1'b0};
             assign smoothed = 26'd0;
-            wire _unused_smoothing = &{1'b0, smoothing, SMOOTHING_LARGEST};
+            wire _unused_smoothing = &{1'b0, smoothing};
         end
     endgenerate
 

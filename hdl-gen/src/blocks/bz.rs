@@ -13,7 +13,6 @@ use crate::plan::creep;
 use crate::plan::crosstalk;
 use crate::plan::curve::{self, CurvePlan, SEGMENT_BITS};
 use crate::plan::dead::{DeadPlan, WEIGHT_BITS};
-use crate::plan::factor::WITH_FRACTION;
 use crate::plan::gain::{GAIN_BITS, LARGEST_NUMBER};
 use crate::plan::smoothing;
 use crate::plan::streams::Streams;
@@ -58,10 +57,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         })
         .some(plan.crosstalk.as_ref(), |all, of| all.unsigned("CROSSTALK", crosstalk::PARAMETER_BITS, of.bits()))
         .some(plan.creep.as_ref(), |all, of| all.unsigned("CREEP", creep::PARAMETER_BITS, of.bits()))
-        .some(plan.smoothing.as_ref(), |all, of| {
-            all.unsigned("SMOOTHING", WITH_FRACTION, of.restart.bits())
-                .some(of.largest, |all, largest| all.unsigned("SMOOTHING_LARGEST", LONG_BITS, largest as u64))
-        })
+        .some(plan.smoothing.as_ref(), |all, of| all.unsigned("SMOOTHING", smoothing::PARAMETER_BITS, of.bits()))
         .some(plan.calibration.as_ref(), of_calibration)
         .signed("STRESS_BOUND", LONG_BITS, stress.bound)
         .when(in_rom, |all| all.outer("ROM_DIR").text("ROM_NAME", &plan.design.name))

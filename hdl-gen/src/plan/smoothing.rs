@@ -4,7 +4,7 @@ use golden::design::Design;
 use golden::smoothing::RESTART;
 use serde::Serialize;
 
-use super::factor::Factor;
+use super::factor::{Factor, WITH_FRACTION};
 use crate::cores::LONG_BITS;
 use crate::format::{Format, pow2};
 
@@ -16,6 +16,8 @@ const FRACTION: u32 = 9;
 const HALF: i64 = 1 << (FRACTION - 1);
 /// Fraction bits of the variance of the noise left.
 pub const VARIANCE_FRACTION: u32 = 24;
+/// Bits of the parameter.
+pub const PARAMETER_BITS: u32 = LONG_BITS + WITH_FRACTION;
 /// Bits that the memory keeps of a taxel: its stress, its average.
 pub const WORD_BITS: u32 = LONG_BITS + LONG_BITS + FRACTION;
 
@@ -54,6 +56,11 @@ impl SmoothingPlan {
             restart: Factor::new(RESTART * input.noise),
             largest: input.typical_pa().map(|pascals| ((pascals * pow2(-stress.lsb)).round() as i64).max(1)),
         })
+    }
+
+    /// As the hardware has it: the stress that a step is compared with, or 0, above the factor.
+    pub fn bits(&self) -> u64 {
+        (self.largest.unwrap_or(0).unsigned_abs() << WITH_FRACTION) | self.restart.bits()
     }
 
     /// Takes a good frame into the average, with the weight `2^-rate`, and puts the average in its place. Steps of `replaced`
