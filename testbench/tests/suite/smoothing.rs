@@ -27,8 +27,8 @@ const CREEP: Creep = Creep { strength: 0.4, seconds: 0.03, frames_per_second: 10
 /// Most of it is noise.
 const ERROR: StandardError = StandardError { model: 0.002, noise: 30.0, border: 0.05 };
 
-/// Both plans and estimators, both scalings, noise as a share and as measured, smoothing, creep or both, dead taxels and crosstalk, integers, beats of several
-/// samples at once and one by one.
+/// Both plans and estimators, both scalings, noise as a share and as measured. Smoothing, creep or both, dead taxels and
+/// crosstalk, integers, beats of several samples at once and one by one.
 fn designs() -> Vec<Design> {
     let [paper, reduced] = [PlanKind::Paper, PlanKind::Reduced];
     let small = |name: &str, kind: PlanKind, outputs: Outputs, scaling: Scaling, smoothing: u32| {
@@ -116,8 +116,10 @@ fn packets(plan: &Plan, seed: u64) -> Vec<Vec<u32>> {
         last[1] = -stress;
         std::iter::repeat_n(held, 10).chain([last])
     });
+    // So light that measured noise is many times the load.
+    let light = vec![-1e-4 * full_scale; plan.taxels()];
     let mut sent = contacts(plan, seed);
-    sent.extend(steps.into_iter().chain(beyond).map(|stress| packet(plan, &stress)));
+    sent.extend(steps.into_iter().chain(beyond).chain([light]).map(|stress| packet(plan, &stress)));
     sent
 }
 
