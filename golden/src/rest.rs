@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::check::{holds, together};
 use crate::dead_taxels::MOST_DEAD;
-use crate::design::{Calibration, Design};
+use crate::design::{Calibration, Design, MeasuredNoise};
 use crate::numbers::{counted, magnitude, middle as median};
 
 /// Fewer frames give no standard deviation.
@@ -270,12 +270,12 @@ impl AtRest {
         said
     }
 
-    /// The noise over the largest reading of a typical frame of contacts: for `sensor.noise`.
+    /// The noise in pascals, and the largest stress of a typical frame of contacts: for `sensor.noise`.
     ///
     /// # Errors
     ///
     /// [`RestError::NoLoad`], and [`RestError::LessLoad`] where nearly all frames with load pull.
-    pub fn noise_of(&self, design: &Design, loaded: &[Vec<f64>]) -> Result<f64, RestError> {
+    pub fn noise_of(&self, design: &Design, loaded: &[Vec<f64>]) -> Result<MeasuredNoise, RestError> {
         let above = |frame: &Vec<f64>| -> Vec<f64> {
             let live = self.taxels.iter().filter(|each| self.works(each.taxel));
             let of = |taxel: usize, value: f64| design.input.to_pa(taxel, value);
@@ -293,7 +293,7 @@ impl AtRest {
         if holds(pull, all) {
             return Err(RestError::LessLoad(pull, all));
         }
-        Ok(self.noise_pa / typical)
+        Ok(MeasuredNoise { deviation: self.noise_pa, largest: typical })
     }
 
     /// Gains and offsets with which these readings are none: the design's gains, 0 for dead and stuck taxels.

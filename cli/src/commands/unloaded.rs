@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use golden::check::{Beyond, beyond};
-use golden::design::{Design, Expected, MAX_NOISE};
+use golden::design::{Design, Expected, Input, MAX_NOISE, MeasuredNoise};
 use golden::numbers::counted;
 use golden::output::write_whole;
 use golden::resolved::{folder, keep_apart};
@@ -48,7 +48,8 @@ pub fn run(
 ) -> message::Result {
     let named = |error| format!("{}: {error}", design.name);
     let rest = AtRest::of(design, frames).map_err(named)?;
-    let noise_of_contacts = loaded.map(|loaded| share(design, &rest, loaded)).transpose()?;
+    let of_contacts = loaded.map(|loaded| noise_of(design, &rest, loaded)).transpose()?;
+    let noise_of_contacts = of_contacts.map(MeasuredNoise::share);
     let mut faults = Vec::new();
     if let Some(out) = out.filter(|_| rest.touched) {
         faults.push(format!(
@@ -100,12 +101,13 @@ pub fn run(
     if beyond.readings > 0 {
         say!(text, "{beyond}");
     }
-    match noise_of_contacts {
-        Some(share) => say!(text, "[sensor] noise = {}  # of the largest reading of a typical contact", shown(share)),
-        None if rest.noise_of_full_scale > 0.0 => say!(
+    let full_scale = MeasuredNoise { deviation: rest.noise_pa, largest: design.hardware.full_scale_pa };
+    match of_contacts {
+        Some(noise) => say!(text, "[sensor] noise = {}  # of typical contacts", key(&design.input, noise)),
+        None if rest.noise_pa > 0.0 => say!(
             text,
-            "[sensor] noise = {}  # for contacts that reach full_scale_pa; for yours, name their frames with --loaded",
-            shown(rest.noise_of_full_scale)
+            "[sensor] noise = {}  # of contacts at full scale; for yours, name their frames with --loaded",
+            key(&design.input, full_scale)
         ),
         None => (),
     }
@@ -126,9 +128,10 @@ pub fn run(
     Ok(Message { text, faults })
 }
 
-/// The noise as a share of what typical contacts read.
-fn share(design: &Design, rest: &AtRest, loaded: &[Vec<f64>]) -> Result<f64, String> {
-    let share = rest.noise_of(design, loaded).map_err(|error| format!("--loaded: {error}"))?;
+/// The noise in pascals, beside what typical contacts read.
+fn noise_of(design: &Design, rest: &AtRest, loaded: &[Vec<f64>]) -> Result<MeasuredNoise, String> {
+    let noise = rest.noise_of(design, loaded).map_err(|error| format!("--loaded: {error}"))?;
+    let share = noise.share();
     if share > MAX_NOISE {
         return Err(format!(
             "--loaded: the noise is {:.0} % of a typical contact's largest reading, above the {} % of sensor.noise; press harder",
@@ -136,7 +139,16 @@ fn share(design: &Design, rest: &AtRest, loaded: &[Vec<f64>]) -> Result<f64, Str
             100.0 * MAX_NOISE
         ));
     }
-    Ok(share)
+    Ok(MeasuredNoise { largest: noise.largest.min(design.hardware.full_scale_pa), ..noise })
+}
+
+/// The value of `sensor.noise` in the units of frames; with a curve the share, as a count is unlike at each stress.
+fn key(input: &Input, MeasuredNoise { deviation, largest }: MeasuredNoise) -> String {
+    if input.curve.is_some() {
+        return shown(deviation / largest).to_string();
+    }
+    let unit = input.pa_per_count.unwrap_or(1.0).abs();
+    format!("{{ deviation = {}, largest = {} }}", shown(deviation / unit), digits(largest / unit, 3, f64::floor))
 }
 
 /// Rounded up to a tenth, and not to 0.
@@ -145,9 +157,14 @@ fn ceil(pascals: f64) -> f64 {
 }
 
 /// With two digits, rounded up.
-fn shown(share: f64) -> f64 {
-    let unit = 10_f64.powi(share.log10().floor() as i32 - 1);
-    let digits = (share / unit).ceil();
-    // So that 0.00024 is no 0.00024000000000000003.
-    format!("{:e}", digits * unit).parse::<f64>().map_or(share, |value| (value * 1e9).round() / 1e9).max(1e-9)
+fn shown(value: f64) -> f64 {
+    digits(value, 2, f64::ceil)
+}
+
+/// With so many digits, rounded by `pick`, and not to 0.
+fn digits(value: f64, count: i32, pick: fn(f64) -> f64) -> f64 {
+    let unit = 10_f64.powi(value.log10().floor() as i32 + 1 - count);
+    // So that 0.00024 is no 0.00024000000000000003, and 1000 does not become 999.
+    let near = |value: f64| (value * 1e9).round() / 1e9;
+    near(pick(near(value / unit)) * unit).max(1e-9)
 }

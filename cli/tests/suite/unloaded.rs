@@ -63,7 +63,13 @@ fn the_calibration_takes_the_offsets_off() {
     let lines = String::from_utf8(said.stdout).unwrap();
     assert!(said.status.success() && said.stderr.is_empty(), "{:?}", String::from_utf8(said.stderr));
     assert!(lines.lines().count() <= 7, "{lines}");
-    for part in ["Dead: [9]", "noise_floor_pa = 1", "noise = 0.0", "calibration = \"mat.calibration.csv\"", "--json"] {
+    for part in [
+        "Dead: [9]",
+        "noise_floor_pa = 1",
+        "noise = { deviation = 2.",
+        "calibration = \"mat.calibration.csv\"",
+        "--json",
+    ] {
         assert!(lines.contains(part), "no {part:?} in: {lines}");
     }
     let report: serde_json::Value =
@@ -80,9 +86,13 @@ fn the_calibration_takes_the_offsets_off() {
     write_frames(loaded.as_ref(), &contacts).unwrap();
     let said = sptfra(&["check", &design, "--frames", &rest, "--unloaded", "--loaded", &loaded]);
     let lines = String::from_utf8(said.stdout).unwrap();
-    let share = lines.lines().find_map(|line| line.strip_prefix("[sensor] noise = ")).expect("a share");
-    let share: f64 = share.split("  #").next().unwrap().parse().unwrap();
-    assert!((0.0019..0.0023).contains(&share), "{share}: two counts of a thousand");
+    let line = lines.lines().find(|line| line.starts_with("[sensor] noise = ")).expect("a noise");
+    let key = line.strip_prefix("[sensor] ").unwrap();
+    let with_key = path("with-key.toml");
+    fs::write(&with_key, text(&format!("calibration = \"gains.csv\"\n{key}\n"))).unwrap();
+    let measured = Design::load(with_key.as_ref()).unwrap().input.measured_noise.expect("as it is printed");
+    // Of counts: two, and a thousand.
+    assert!((1.9..2.3).contains(&measured.deviation) && (990.0..=1000.0).contains(&measured.largest), "{line}");
     // At this noise, not the design's, the error is told.
     let errors = "noise = [0.0, 0.004, 0.02], median = [5.0, 5.0, 80.0], p95 = [9.0, 9.0, 90.0]";
     let keys = format!("noise = 0.02\n[algorithm]\nexpected_error = {{ {errors} }}\n");

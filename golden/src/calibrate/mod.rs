@@ -18,7 +18,7 @@ pub use contacts::random_contacts;
 pub use standard_error::{ERROR_FRAMES, state_errors};
 pub use work::Work;
 
-use crate::design::{Design, Estimator, Input, JointConstants, conditions};
+use crate::design::{Design, Estimator, Input, JointConstants, Reads, conditions};
 use crate::estimators::joint::{CUBIC_LIMIT, MAX_HIDDEN};
 use crate::scene::SceneError;
 use crate::solver::SolverError;
@@ -176,7 +176,8 @@ pub fn calibrate(
         train::train((sensor, training_set), &samples, &targets, friction_correction, half_window, settings, tick)
     });
     let algorithm = &design.algorithm;
-    let conditions = conditions(sensor, tension, algorithm.kernel, algorithm.regularisation, noise, training_set);
+    let reads = Reads { tension, noise, smoothing };
+    let conditions = conditions(sensor, reads, algorithm.kernel, algorithm.regularisation, training_set);
     Ok(JointConstants { training_set, gain, friction_correction, correction, calibrated_for: Some(conditions) })
 }
 

@@ -66,13 +66,28 @@ impl Default for Input {
     }
 }
 
-/// Noise in the units of frames.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Noise in the units of frames, alike in all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct MeasuredNoise {
-    /// Standard deviation of a reading.
+    /// Standard deviation of a reading, as `sptfra check --unloaded` measures it.
+    #[schemars(range(min = 0.0))]
     pub deviation: f64,
-    /// The largest reading of a typical contact.
+    /// The largest reading of a typical contact, without the offset.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub largest: f64,
+}
+
+impl MeasuredNoise {
+    /// The share of a typical contact's largest reading.
+    pub fn share(self) -> f64 {
+        self.deviation / self.largest
+    }
+
+    /// With `unit` in place of 1.
+    fn times(self, unit: f64) -> Self {
+        Self { deviation: self.deviation * unit, largest: self.largest * unit }
+    }
 }
 
 /// What a taxel reads that is pulled.
@@ -135,16 +150,17 @@ impl Input {
     /// The input of the same sensor whose frames are in pascals, one by one: what gains and curve have made of counts.
     pub(crate) fn of_pascals(&self) -> Self {
         let Self { ref dead, tension, noise, crosstalk, .. } = *self;
-        let measured_noise = self.measured_noise.map(|noise| {
-            let pascals = |value: f64| value * self.pa_per_count.unwrap_or(1.0).abs();
-            MeasuredNoise { deviation: pascals(noise.deviation), largest: pascals(noise.largest) }
-        });
-        Self { dead: dead.clone(), tension, noise, measured_noise, crosstalk, ..Self::default() }
+        Self { dead: dead.clone(), tension, noise, measured_noise: self.noise_pa(), crosstalk, ..Self::default() }
     }
 
     /// The largest stress of a typical contact in pascals, whose share `noise` every frame has; `None`: a share of its own.
     pub fn typical_pa(&self) -> Option<f64> {
-        self.measured_noise.map(|noise| noise.largest * self.pa_per_count.unwrap_or(1.0).abs())
+        self.noise_pa().map(|noise| noise.largest)
+    }
+
+    /// The noise as measured, in pascals.
+    fn noise_pa(&self) -> Option<MeasuredNoise> {
+        self.measured_noise.map(|noise| noise.times(self.pa_per_count.unwrap_or(1.0).abs()))
     }
 
     /// Gain and offset of a taxel.

@@ -11,25 +11,41 @@ use crate::estimators::joint::{CUBIC_LIMIT, Correction, JointConstants, Training
 /// What the constants depend on, for people and for comparison.
 pub fn conditions(
     sensor: &Sensor,
-    tension: Tension,
+    Reads { tension, noise, smoothing }: Reads,
     kernel: Kernel,
     regularisation: Regularisation,
-    noise: f64,
     training_set: TrainingSet,
 ) -> String {
-    let reads = if tension == Tension::Clipped { ", tension clipped" } else { "" };
-    format!("{sensor}, {kernel}, {}{reads}, noise {noise}, {training_set}", regularisation.factor())
+    let tension = if tension == Tension::Clipped { ", tension clipped" } else { "" };
+    let smoothing = if smoothing > 0 { format!(", smoothing {smoothing}") } else { String::new() };
+    let factor = regularisation.factor();
+    format!("{sensor}, {kernel}, {factor}{tension}, noise {noise}{smoothing}, {training_set}")
 }
 
-/// From the keys; the constants must belong to `conditions`, those of the design with its training set.
+/// What a sensor reads, as far as constants depend on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reads {
+    /// Whether it reads what pulls.
+    pub tension: Tension,
+    /// Share of the largest reading.
+    pub noise: f64,
+    /// Frames are averaged with the weight `2^-k`; 0: they are not.
+    pub smoothing: u32,
+}
+
+/// From the keys; the constants must belong to `conditions`, those of the design with its training set, for what it reads.
+///
+/// Those of single frames serve averages too, with larger errors than those of averages. The reverse spoils single frames.
 pub(super) fn constants(
     check: &Check,
     keys: &AlgorithmKeys,
-    conditions: impl Fn(TrainingSet) -> String,
+    reads: Reads,
+    conditions: impl Fn(Reads, TrainingSet) -> String,
 ) -> Result<JointConstants, DesignError> {
     let training_set = keys.training_set.unwrap_or_default();
-    let conditions = conditions(training_set);
-    if let Some(other) = keys.calibrated_for.as_ref().filter(|&other| *other != conditions) {
+    let [single, conditions] =
+        [0, reads.smoothing].map(|smoothing| conditions(Reads { smoothing, ..reads }, training_set));
+    if let Some(other) = keys.calibrated_for.as_ref().filter(|&other| ![&single, &conditions].contains(&other)) {
         return Err(check.value(
             "algorithm.calibrated_for",
             format!("says that the constants belong to \"{other}\", but the design is \"{conditions}\""),

@@ -105,14 +105,7 @@ pub(super) enum NoiseKey {
     Share(#[schemars(range(min = 0.0, max = MAX_NOISE))] f64),
     /// Pascals or counts, as the frames are, alike in every frame, so that light contacts have a larger error. With a curve
     /// write the share that `sptfra check --unloaded --loaded` prints.
-    Measured {
-        /// Standard deviation of a reading, as `sptfra check --unloaded` measures it.
-        #[schemars(range(min = 0.0))]
-        deviation: f64,
-        /// The largest reading of a typical contact, without the offset.
-        #[schemars(extend("exclusiveMinimum" = 0.0))]
-        largest: f64,
-    },
+    Measured(MeasuredNoise),
 }
 
 impl NoiseKey {
@@ -120,7 +113,7 @@ impl NoiseKey {
     pub(super) fn share(self) -> f64 {
         match self {
             Self::Share(share) => share,
-            Self::Measured { deviation, largest } => deviation / largest,
+            Self::Measured(noise) => noise.share(),
         }
     }
 
@@ -128,16 +121,13 @@ impl NoiseKey {
     pub(super) fn measured(self) -> Option<MeasuredNoise> {
         match self {
             Self::Share(_) => None,
-            Self::Measured { deviation, largest } => Some(MeasuredNoise { deviation, largest }),
+            Self::Measured(noise) => Some(noise),
         }
     }
 
     /// The key of an input.
     pub(super) fn of(input: &Input) -> Self {
-        match input.measured_noise {
-            None => Self::Share(input.noise),
-            Some(MeasuredNoise { deviation, largest }) => Self::Measured { deviation, largest },
-        }
+        input.measured_noise.map_or(Self::Share(input.noise), Self::Measured)
     }
 }
 

@@ -49,7 +49,7 @@ pub use hardware::{
     CalibrationIn, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise, Overrun, STREAM_BITS, Samples, Scaling,
 };
 pub use input::{DEFAULT_NOISE, Input, MAX_NOISE, MeasuredNoise, Tension};
-pub use joint::conditions;
+pub use joint::{Reads, conditions};
 pub use read::syntax_position;
 pub use regularisation::Regularisation;
 pub use schema::design_schema;

@@ -2,10 +2,11 @@
 
 use super::checks::{self, Check};
 use super::files::Beside;
+use super::joint::Reads;
 use super::keys::{AlgorithmKeys, CurveKey, DeadKey, DesignKeys, FORMAT, NoiseKey, SensorKeys, SlipKeys};
 use super::{
     Algorithm, DEFAULT_MAX_STANDARD_ERROR, Design, DesignError, Estimator, FileNames, Input, JointConstants, Kernel,
-    NOISE_FLOOR_DIVISOR, Regularisation, Sensor, Slip, Tension, filter_keys, joint, rules,
+    NOISE_FLOOR_DIVISOR, Regularisation, Sensor, Slip, filter_keys, joint, rules,
 };
 
 /// `beside` are the files that the design names.
@@ -18,8 +19,9 @@ pub(super) fn design(keys: DesignKeys, origin: &str, beside: Beside<'_>) -> Resu
     let SensorKeys { columns, rows, pitch_mm, depth_mm, .. } = keys;
     let sensor = Sensor { columns, rows, pitch_mm, depth_mm };
     let correction = algorithm.correction.clone();
-    let algorithm =
-        self::algorithm(&check, algorithm, (&sensor, keys.tension, keys.noise.share()), hardware.full_scale_pa)?;
+    let reads =
+        Reads { tension: keys.tension, noise: keys.noise.share(), smoothing: keys.smoothing.unwrap_or_default() };
+    let algorithm = self::algorithm(&check, algorithm, (&sensor, reads), hardware.full_scale_pa)?;
     rules::tables(&check, &sensor, &algorithm, &hardware)?;
     // Last, so that what is wrong with the design itself is said before its files are read.
     let input = Input::new(&check, keys, beside, sensor.taxels(), &hardware)?;
@@ -47,18 +49,18 @@ pub(super) fn unfitted(mut keys: DesignKeys) -> DesignKeys {
 fn algorithm(
     check: &Check,
     keys: AlgorithmKeys,
-    (sensor, tension, noise): (&Sensor, Tension, f64),
+    (sensor, reads): (&Sensor, Reads),
     full_scale_pa: f64,
 ) -> Result<Algorithm, DesignError> {
     let regularisation = match keys.regularisation {
         Some(Regularisation::Factor(0.0)) => Regularisation::None,
         Some(other) => other,
-        None => Regularisation::usual(sensor, noise),
+        None => Regularisation::usual(sensor, reads.noise),
     };
     let kernel = keys.kernel.unwrap_or(Kernel::usual(sensor));
     let joint = match keys.estimator {
-        Estimator::Joint => joint::constants(check, &keys, |training_set| {
-            joint::conditions(sensor, tension, kernel, regularisation, noise, training_set)
+        Estimator::Joint => joint::constants(check, &keys, reads, |reads, training_set| {
+            joint::conditions(sensor, reads, kernel, regularisation, training_set)
         })?,
         Estimator::Line => {
             joint::refuse(check, &keys)?;

@@ -120,9 +120,9 @@ fn an_expected_error_has_a_number_for_each_noise() {
     }
 }
 
-/// Constants of one training set, or noise, are not those of another.
+/// Constants of one training set, noise or average are not those of another.
 #[test]
-fn training_set_and_noise_are_part_of_what_constants_are_calibrated_for() {
+fn training_set_noise_and_smoothing_are_part_of_what_constants_are_calibrated_for() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs/sensor2-wide.toml");
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(Design::load(&path).is_ok());
@@ -130,4 +130,13 @@ fn training_set_and_noise_are_part_of_what_constants_are_calibrated_for() {
     refused(&other, &["algorithm.calibrated_for", "general\"", "sptfra calibrate"]);
     let noisier = text.replace("noise = 0.01\n", "noise = 0.02\n");
     refused(&noisier, &["algorithm.calibrated_for", "noise 0.01", "noise 0.02", "sptfra calibrate"]);
+    // Averages have less noise than single frames, for which these constants are good.
+    let smoothed = |text: &str, k: u32| text.replace("noise = 0.01\n", &format!("noise = 0.01\nsmoothing = {k}\n"));
+    let beside = path.with_file_name("smoothed.toml");
+    assert!(Design::from_toml(&smoothed(&text, 4), beside.to_str().unwrap()).is_ok());
+    let of_averages = text.replace("noise 0.01, general", "noise 0.01, smoothing 4, general");
+    assert!(Design::from_toml(&smoothed(&of_averages, 4), beside.to_str().unwrap()).is_ok());
+    for other in [of_averages.clone(), smoothed(&of_averages, 2)] {
+        refused(&other, &["algorithm.calibrated_for", "noise 0.01, smoothing 4, general", "sptfra calibrate"]);
+    }
 }
