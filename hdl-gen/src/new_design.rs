@@ -99,14 +99,14 @@ impl NewDesign {
         let mut design = self.unfitted()?;
         if self.estimator == Estimator::Joint {
             stage("fitting gain and friction to contacts with known forces");
-            let mut found = calibrate(&design, &Settings::constants(), &mut |_| ())?;
+            let mut found = calibrate(&design, &Settings::constants(), &mut || ())?;
             let [gain, c1, c3] = [found.gain, found.friction_correction[0], found.friction_correction[1]]
                 .map(|value| (value * DIGITS).round() / DIGITS);
             (found.gain, found.friction_correction) = (gain, [c1, c3]);
             *design.algorithm.joint = found;
         }
         stage("finding the errors of contacts of all kinds");
-        state_errors(&mut design, Settings::constants().seed, &mut |_| ())?;
+        state_errors(&mut design, Settings::constants().seed, &mut || ())?;
         let text = design.to_commented_toml();
         Design::from_toml(&text, "sptfra new")?;
         Ok(text)

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use golden::calibrate::{CalibrateError, ERROR_FRAMES, Work, calibrate as fit, state_errors};
+use golden::calibrate::{CalibrateError, ERROR_FRAMES, Settings, calibrate as fit, state_errors};
 use golden::design::{Design as Checked, Estimator, TrainingSet};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -34,12 +34,12 @@ pub fn calibrate(
         design.algorithm.joint.training_set = word::<TrainingSet>("training_set", training_set)?;
     }
     let training_set = design.algorithm.joint.training_set;
-    let settings = Work { seed, hidden, quick, thorough }.settings(training_set).map_err(raised)?;
+    let settings = Settings::of(training_set, seed, hidden, quick, thorough).map_err(raised)?;
     // The line search has a standard error only.
     let has_constants = design.algorithm.estimator == Estimator::Joint;
     let all = ERROR_FRAMES + if has_constants { settings.work() } else { 0 };
     let (mut done, mut told) = (0, Instant::now());
-    let mut tick = |_| {
+    let mut tick = || {
         done += 1;
         if told.elapsed() >= PAUSE || done == all {
             told = Instant::now();

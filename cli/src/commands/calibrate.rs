@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use golden::calibrate::{ERROR_FRAMES, Work, calibrate, state_errors};
+use golden::calibrate::{ERROR_FRAMES, Settings, calibrate, state_errors};
 use golden::design::{Design, Estimator, Filter, JointConstants, StandardError, TrainingSet};
 use golden::output::write_together;
 use golden::progress::Progress;
@@ -79,7 +79,6 @@ pub fn run(args: &Args) -> message::Result {
     if recordings.given() {
         return calibrate_recorded::run(path, out, recordings, *json);
     }
-    let work = Work { seed: *seed, hidden: hidden.map(usize::from), quick: *quick, thorough: *thorough };
     let mut design = Design::load_unfitted(path)?;
     if let Some(name) = name_of(out) {
         design.name = name;
@@ -88,7 +87,7 @@ pub fn run(args: &Args) -> message::Result {
         design.algorithm.joint.training_set = *training_set;
     }
     let training_set = design.algorithm.joint.training_set;
-    let settings = work.settings(training_set)?;
+    let settings = Settings::of(training_set, *seed, hidden.map(usize::from), *quick, *thorough)?;
     let resolved = Resolved::new(&design, path, out)?;
     let progress = Progress::new();
     // The line search has a standard error only.
@@ -96,9 +95,9 @@ pub fn run(args: &Args) -> message::Result {
     let work = if has_constants { settings.work() } else { 0 };
     progress.counted_in("steps", "calibrating", (work + ERROR_FRAMES) as u64);
     if has_constants {
-        *design.algorithm.joint = calibrate(&design, &settings, &mut |_| progress.step())?;
+        *design.algorithm.joint = calibrate(&design, &settings, &mut || progress.step())?;
     }
-    state_errors(&mut design, settings.seed, &mut |_| progress.step())?;
+    state_errors(&mut design, settings.seed, &mut || progress.step())?;
     drop(progress);
     if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
         *scenes = rebase_scenes(scenes, folder(path), folder(out));

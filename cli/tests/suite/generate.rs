@@ -150,7 +150,7 @@ fn a_new_designs_constants_are_those_of_its_sensor() {
         assert_eq!(design.algorithm.joint.correction, None);
         // The shipped ones are for more noise.
         design.input.noise = 0.01;
-        let (found, shipped) = (calibrate(&design, &Settings::constants(), &mut |_| ()).unwrap(), shipped(name));
+        let (found, shipped) = (calibrate(&design, &Settings::constants(), &mut || ()).unwrap(), shipped(name));
         assert!((found.gain / shipped.gain - 1.0).abs() < 5e-3, "{name}: {} {}", found.gain, shipped.gain);
         for (found, shipped) in found.friction_correction.into_iter().zip(shipped.friction_correction) {
             assert!((found - shipped).abs() < 0.02, "{name}: {found} {shipped}");

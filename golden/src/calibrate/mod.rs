@@ -16,7 +16,6 @@ mod work;
 
 pub use contacts::random_contacts;
 pub use standard_error::{ERROR_FRAMES, state_errors};
-pub use work::Work;
 
 use crate::design::{Design, Estimator, Input, JointConstants, Reads, conditions};
 use crate::estimators::joint::{CUBIC_LIMIT, MAX_HIDDEN};
@@ -127,18 +126,8 @@ pub enum CalibrateError {
     },
 }
 
-/// Part of the work that `tick` reports as done.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
-    /// One contact's stress.
-    Contact,
-    /// One frame's estimate.
-    Sample,
-    /// One step of the training.
-    Step,
-}
-
-/// Fits the constants of the grid search to a design; `tick` is called after each piece of work.
+/// Fits the constants of the grid search to a design; `tick` is called after each piece of work: a contact's stress, a
+/// frame's estimate, a step of the training.
 ///
 /// The same design and settings give the same constants on the same machine; another processor may round the sums of
 /// the training differently, which changes a few weights by little.
@@ -149,7 +138,7 @@ pub enum Stage {
 pub fn calibrate(
     design: &Design,
     settings: &Settings,
-    tick: &mut dyn FnMut(Stage),
+    tick: &mut dyn FnMut(),
 ) -> Result<JointConstants, CalibrateError> {
     let name = || design.name.clone();
     if design.algorithm.estimator != Estimator::Joint {

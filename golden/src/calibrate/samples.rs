@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::general::{self, UnitContact};
 use super::observer::{Observer, Sample};
-use super::{CalibrateError, Settings, Stage, random_contacts};
+use super::{CalibrateError, Settings, random_contacts};
 use crate::design::Tension;
 use crate::estimators::joint::TrainingSet;
 use crate::numbers::middle;
@@ -42,7 +42,7 @@ pub(super) fn stream(seed: u64, stream: u64) -> ChaCha8Rng {
 pub(super) fn make(
     observer: &mut Observer<'_>,
     settings: &Settings,
-    tick: &mut dyn FnMut(Stage),
+    tick: &mut dyn FnMut(),
 ) -> Result<Vec<Sample>, CalibrateError> {
     match observer.training_set() {
         TrainingSet::Sliding => sliding(observer, settings, tick),
@@ -53,7 +53,7 @@ pub(super) fn make(
 fn sliding(
     observer: &mut Observer<'_>,
     settings: &Settings,
-    tick: &mut dyn FnMut(Stage),
+    tick: &mut dyn FnMut(),
 ) -> Result<Vec<Sample>, CalibrateError> {
     let sensor = observer.sensor();
     let [least, most] = match observer.tension() {
@@ -78,11 +78,11 @@ fn sliding(
             }
         }
         responses.push(response);
-        tick(Stage::Contact);
+        tick();
     }
     let mut samples = Vec::with_capacity(settings.samples);
     for index in 0..settings.samples {
-        tick(Stage::Sample);
+        tick();
         let Some(one) = responses.get(index % responses.len().max(1)) else { break };
         let other = &responses[random.random_range(0..responses.len())];
         let share = if random.random_range(0..PAIRED) == 0 { random.random_range(0.2..0.8) } else { 0.0 };
@@ -101,19 +101,19 @@ fn sliding(
 fn general(
     observer: &mut Observer<'_>,
     settings: &Settings,
-    tick: &mut dyn FnMut(Stage),
+    tick: &mut dyn FnMut(),
 ) -> Result<Vec<Sample>, CalibrateError> {
     let mut random = stream(settings.seed, 0);
     let contacts: Vec<UnitContact> = (0..settings.contacts)
         .map(|_| {
-            tick(Stage::Contact);
+            tick();
             UnitContact::random(observer.sensor(), &mut random)
         })
         .collect();
     let mut random = stream(settings.seed, 1);
     let mut samples = Vec::with_capacity(settings.samples);
     for index in 0..settings.samples {
-        tick(Stage::Sample);
+        tick();
         samples.extend(general::sample(&contacts, index, observer, &mut random)?);
     }
     Ok(samples)

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
+use super::CalibrateError;
 use super::samples::stream;
-use super::{CalibrateError, Stage};
 use crate::design::{Design, ExpectedError, Input, StandardError};
 use crate::estimators::standard_error::Marks;
 use crate::metrics::Quantiles;
@@ -57,7 +57,7 @@ struct Contact {
 /// # Errors
 ///
 /// [`CalibrateError`]: a sensor without matrices, or no frame with an answer.
-pub fn state_errors(design: &mut Design, seed: u64, tick: &mut dyn FnMut(Stage)) -> Result<(), CalibrateError> {
+pub fn state_errors(design: &mut Design, seed: u64, tick: &mut dyn FnMut()) -> Result<(), CalibrateError> {
     let contacts = contacts(design, seed, tick)?;
     let of_noise = |at: usize| -> Vec<f64> {
         contacts
@@ -81,7 +81,7 @@ pub fn state_errors(design: &mut Design, seed: u64, tick: &mut dyn FnMut(Stage))
     Ok(())
 }
 
-fn contacts(design: &Design, seed: u64, tick: &mut dyn FnMut(Stage)) -> Result<Vec<Contact>, CalibrateError> {
+fn contacts(design: &Design, seed: u64, tick: &mut dyn FnMut()) -> Result<Vec<Contact>, CalibrateError> {
     let Input { tension, noise, smoothing, .. } = design.input;
     // The contacts are in pascals, whatever the sensor counts, and each frame stands alone.
     let design = &Design { input: Input { tension, noise, ..Input::default() }, ..design.clone() };
@@ -126,7 +126,7 @@ fn contacts(design: &Design, seed: u64, tick: &mut dyn FnMut(Stage)) -> Result<V
         let indices = round * kinds.len()..(round + 1) * kinds.len();
         let found: Vec<Contact> = indices.into_par_iter().map(contact).collect::<Result<_, _>>()?;
         for _ in 0..found.len() {
-            tick(Stage::Sample);
+            tick();
         }
         contacts.extend(found);
     }

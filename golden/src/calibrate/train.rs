@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use super::diagonal::Diagonal;
 use super::observer::Sample;
 use super::whitening::Basis;
-use super::{Settings, Stage, diagonal};
+use super::{Settings, diagonal};
 use crate::design::Sensor;
 use crate::estimators::joint::{self, Correction, LARGEST, TrainingSet, WEIGHT_FRACTION, WEIGHT_LIMIT};
 use crate::parity::{COMPONENTS, butterfly};
@@ -45,7 +45,7 @@ pub(super) fn train(
     friction_correction: [f64; 2],
     half_window: [usize; 2],
     settings: &Settings,
-    tick: &mut dyn FnMut(Stage),
+    tick: &mut dyn FnMut(),
 ) -> Correction {
     let missing: Vec<[f32; 2]> = samples
         .iter()
@@ -81,7 +81,7 @@ pub(super) fn train(
         let rate = 0.5 * RATE * (1.0 + (std::f32::consts::PI * step as f32 / settings.steps as f32).cos());
         learner.descend(&batch, &wanted, (rate, step));
         learner.leave_out(settings.hidden + spare_left(settings, step));
-        tick(Stage::Step);
+        tick();
     }
     learner.correction(&basis, half_window)
 }
@@ -301,7 +301,7 @@ mod tests {
         let design = Design::from_toml(pad, "pad.toml").unwrap();
         let settings = Settings { contacts: 40, samples: BATCH, ..Settings::default() };
         let mut observer = Observer::new(&design, 0, HALF_WINDOW).unwrap();
-        let samples = samples::make(&mut observer, &settings, &mut |_| ()).unwrap();
+        let samples = samples::make(&mut observer, &settings, &mut || ()).unwrap();
         let basis = Basis::new(&samples, HALF_WINDOW, false);
         let learner = Learner::new(&basis, units, &mut ChaCha8Rng::seed_from_u64(1));
         (samples, basis, learner)

@@ -150,11 +150,11 @@ fn a_calibration_is_the_same_for_the_same_seed_and_survives_the_file() {
     let settings = Settings { seed: 3, contacts: 60, samples: 300, hidden: 4, spare: 0, steps: 200, hollow: false };
     let mut design = small("estimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]");
     let mut ticks = 0_usize;
-    let found = calibrate(&design, &settings, &mut |_| ticks += 1).unwrap();
+    let found = calibrate(&design, &settings, &mut || ticks += 1).unwrap();
     assert_eq!(ticks, settings.work());
-    assert_eq!(found, calibrate(&design, &settings, &mut |_| ()).unwrap());
-    assert_ne!(found, calibrate(&design, &Settings { seed: 4, ..settings }, &mut |_| ()).unwrap());
-    let plain = calibrate(&design, &Settings { hidden: 0, ..settings }, &mut |_| ()).unwrap();
+    assert_eq!(found, calibrate(&design, &settings, &mut || ()).unwrap());
+    assert_ne!(found, calibrate(&design, &Settings { seed: 4, ..settings }, &mut || ()).unwrap());
+    let plain = calibrate(&design, &Settings { hidden: 0, ..settings }, &mut || ()).unwrap();
     assert_eq!(
         (plain.gain, plain.friction_correction, plain.correction),
         (found.gain, found.friction_correction, None)
@@ -164,7 +164,7 @@ fn a_calibration_is_the_same_for_the_same_seed_and_survives_the_file() {
     let mut other = design.clone();
     other.algorithm.plan = PlanKind::Paper;
     other.input.pa_per_count = Some(-0.01);
-    let other = calibrate(&other, &Settings { hidden: 0, ..settings }, &mut |_| ()).unwrap();
+    let other = calibrate(&other, &Settings { hidden: 0, ..settings }, &mut || ()).unwrap();
     assert!(
         (other.gain - plain.gain).abs() < 1e-9
             && (other.friction_correction[0] - plain.friction_correction[0]).abs() < 1e-9
@@ -213,7 +213,7 @@ fn either_plan_finds_the_same_from_pascals_and_from_counts() {
 
 #[test]
 fn the_line_estimator_has_nothing_to_calibrate() {
-    let error = calibrate(&small("estimator = \"line\""), &Settings::quick(), &mut |_| ()).unwrap_err();
+    let error = calibrate(&small("estimator = \"line\""), &Settings::quick(), &mut || ()).unwrap_err();
     assert!(matches!(error, CalibrateError::OtherEstimator { .. }), "{error}");
     assert!(error.to_string().contains("estimator = \"joint\""), "{error}");
 }
@@ -268,7 +268,7 @@ fn frames_without_an_answer_have_a_status() {
 static ROUGH: LazyLock<Solver> = LazyLock::new(|| {
     let mut design = small("estimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]");
     let settings = Settings { seed: 3, contacts: 40, samples: 200, hidden: 4, spare: 0, steps: 100, hollow: false };
-    *design.algorithm.joint = calibrate(&design, &settings, &mut |_| ()).unwrap();
+    *design.algorithm.joint = calibrate(&design, &settings, &mut || ()).unwrap();
     Solver::new(&design).unwrap()
 });
 
@@ -308,7 +308,7 @@ fn a_transposed_frame_has_transposed_forces_on_a_square() {
         let mut design = Design::from_toml(square, "pad.toml").unwrap();
         design.algorithm.joint.training_set = training_set;
         let settings = Settings { seed: 3, contacts: 40, samples: 200, hidden, spare: 0, steps: 100, hollow: false };
-        *design.algorithm.joint = calibrate(&design, &settings, &mut |_| ()).unwrap();
+        *design.algorithm.joint = calibrate(&design, &settings, &mut || ()).unwrap();
         let solver = Solver::new(&design).unwrap();
         let mut uncorrected = design.clone();
         uncorrected.algorithm.joint.correction = None;
@@ -342,7 +342,7 @@ fn calibration_trains_at_the_noise_of_the_sensor() {
         .unwrap();
         design.algorithm.estimator = Estimator::Joint;
         (design.input.noise, design.input.smoothing) = (noise, smoothing);
-        *design.algorithm.joint = calibrate(&design, &Settings::quick(), &mut |_| ()).unwrap();
+        *design.algorithm.joint = calibrate(&design, &Settings::quick(), &mut || ()).unwrap();
         design
     });
     let frames = Kind::Sliding.frames(&trained[0].sensor, 0.5, 7000..7080).unwrap();

@@ -37,7 +37,7 @@ fn calibrated(pitch_mm: [f64; 2], depth_by_pitch: f64, estimator: &str, settings
     );
     let mut design = Design::from_toml(&text, "thin").unwrap();
     if let Some(settings) = settings {
-        *design.algorithm.joint = calibrate(&design, settings, &mut |_| ()).unwrap();
+        *design.algorithm.joint = calibrate(&design, settings, &mut || ()).unwrap();
     }
     design
 }

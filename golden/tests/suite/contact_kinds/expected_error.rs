@@ -12,7 +12,7 @@ const WITHIN: f64 = 0.2;
 
 /// Says the errors of a design, and compares them with those of so many contacts of each kind and friction.
 fn compare(design: &mut Design, count: u64) {
-    state_errors(design, 1, &mut |_| ()).unwrap();
+    state_errors(design, 1, &mut || ()).unwrap();
     let expected = design.algorithm.expected_error.clone().unwrap();
     let solver = Solver::new(design).unwrap();
     let kinds = Kind::all().filter(|kind| !matches!(kind, Kind::Noisy | Kind::Border | Kind::Mixed));
@@ -89,7 +89,7 @@ fn the_expected_error_holds_for_six_geometries() {
              estimator = \"joint\"\ngain = 1\nfriction_correction = [1, 0]\n"
         );
         let mut design = Design::from_toml(&text, "pad.toml").unwrap();
-        *design.algorithm.joint = calibrate(&design, &Settings::constants(), &mut |_| ()).unwrap();
+        *design.algorithm.joint = calibrate(&design, &Settings::constants(), &mut || ()).unwrap();
         compare(&mut design, 20);
     }
 }
