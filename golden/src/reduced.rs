@@ -73,11 +73,6 @@ pub struct SumRow {
 }
 
 impl SumRow {
-    /// The sum for a folded operand.
-    pub fn apply(&self, x: &[Vec<f64>; COMPONENTS]) -> f64 {
-        self.weights.iter().zip(&x[self.component]).map(|(weight, value)| weight * value).sum()
-    }
-
     /// The row of this sum and another one of the same component.
     fn plus(mut self, other: &Self) -> Self {
         self.weights.iter_mut().zip(&other.weights).for_each(|(weight, other)| *weight += other);

@@ -21,13 +21,8 @@ pub struct FoldedMatrix {
 }
 
 impl FoldedMatrix {
-    /// Folds a matrix of m by m entries with the mirror symmetry `parity`; its rows at image 0 of each orbit are
-    /// enough.
-    pub fn new(matrix: &DMatrix<f64>, parity: usize, orbits: &Orbits) -> Self {
-        Self::from_fn(parity, orbits, |row, column| matrix[(row, column)])
-    }
-
-    /// Folds the matrix with the entries `entry(row, column)`.
+    /// Folds the matrix with the entries `entry(row, column)`, of the mirror symmetry `parity`; its rows at image 0 of each
+    /// orbit are enough.
     ///
     /// `Block_c[q][q']` is the sum over the distinct images `(s, j)` of q' of `sign(c, s) * M[image 0 of q][j]`.
     pub fn from_fn(parity: usize, orbits: &Orbits, entry: impl Fn(usize, usize) -> f64) -> Self {

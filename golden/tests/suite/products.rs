@@ -4,10 +4,12 @@ use golden::float::Float;
 use golden::kernel::{self, Kernel};
 use golden::matrices::Matrices;
 use golden::names::{MatrixName, ReducedName};
-use golden::parity::{COMPONENTS, FoldedMatrix, Orbits};
+use golden::parity::{COMPONENTS, Orbits};
 use golden::products::{ByPq, Engine, ProductList, Source, Stored, Vector};
 use golden::sensor::Sensor;
 use nalgebra::DMatrix;
+
+use crate::matrices::fold;
 
 /// All matrices whole: nothing here knows of folds, blocks or rows of sums.
 #[derive(Clone)]
@@ -92,7 +94,7 @@ impl Stored<4> for Dense {
     fn times<T: Float>(&self, source: Source, x: &[[T; 4]], result: &mut [[T; 4]], _: &mut [Vec<[T; COMPONENTS]>; 2]) {
         let (matrix, parity) = self.of(source);
         let by_component = std::array::from_fn(|component| x.iter().map(|values| values[component].into()).collect());
-        let product = FoldedMatrix::new(matrix, parity, &self.orbits).apply(&by_component);
+        let product = fold(matrix, parity, &self.orbits).apply(&by_component);
         for (orbit, result) in result.iter_mut().enumerate() {
             *result = std::array::from_fn(|component| T::of(product[component][orbit]));
         }

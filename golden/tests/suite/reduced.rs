@@ -6,11 +6,13 @@ use golden::design::{Design, Filter, Kernel, MatrixFilter, Outputs, PlanKind, Se
 use golden::filter::FilterError;
 use golden::kernel;
 use golden::matrices::{Matrices, MatrixName};
-use golden::parity::{COMPONENTS, FoldedMatrix, Orbits, sign};
-use golden::reduced::{ReducedMatrices, ReducedName};
+use golden::parity::{COMPONENTS, Orbits, sign};
+use golden::reduced::{ReducedMatrices, ReducedName, SumRow};
 use golden::solver::{Solution, Solver, Status};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
+
+use crate::matrices::fold;
 
 fn design(size: [usize; 2], pitch_mm: [f64; 2], depth_mm: f64, more: &str) -> Design {
     let text = format!(
@@ -101,7 +103,7 @@ fn blocks_do_what_the_matrix_does() {
         for (name, dense) in ReducedName::ALL.into_iter().zip(&dense) {
             let product = dense * &whole;
             let tolerance = 1e-12 * product.amax();
-            let blocks = FoldedMatrix::new(dense, name.parity(), &orbits);
+            let blocks = fold(dense, name.parity(), &orbits);
             let sparse = reduced.get(name);
             assert_eq!(sparse.parity, name.parity());
             let mut by_rows = vec![[0.0; 4]; orbits.count()];
@@ -139,15 +141,16 @@ fn sums_are_those_of_the_coefficients() {
         let arms = (0..x.len()).map(|taxel| matrices.sensor().arm_m(taxel));
         let shares =
             arms.zip(x.iter()).fold([0.0; 3], |[one, y, x], (arm, w)| [one + w, y + arm[1] * w, x - arm[0] * w]);
+        let sum = |row: &SumRow| -> f64 { row.weights.iter().zip(&folded[row.component]).map(|(w, x)| w * x).sum() };
         for (row, share) in reduced.weight_shares().iter().zip(shares) {
-            assert!((row.apply(&folded) - share).abs() < 1e-12);
+            assert!((sum(row) - share).abs() < 1e-12);
         }
         for p in 0..3 {
             for (q, c) in [&dense[4], &dense[5], &dense[6]].into_iter().enumerate() {
                 let product = (&dense[7 + p] * (c * &x)).sum();
                 let own = if q == p + 1 { total } else { 0.0 };
                 let expected = if q == 0 { product } else { own - product };
-                let found = reduced.sums(p, q).apply(&folded);
+                let found = sum(reduced.sums(p, q));
                 assert!((found - expected).abs() < 1e-11 * (1.0 + total.abs()), "G{}{q}: {found} {expected}", p + 1);
             }
         }
@@ -161,7 +164,7 @@ fn a_row_threshold_is_by_magnitude_and_the_same_for_all_components() {
         let p = 0.02;
         let reduced = ReducedMatrices::new(&matrices, &orbits, &Filter::F2 { p }).unwrap();
         for (name, dense) in ReducedName::ALL.into_iter().zip(&dense) {
-            let blocks = FoldedMatrix::new(dense, name.parity(), &orbits).blocks;
+            let blocks = fold(dense, name.parity(), &orbits).blocks;
             for (q, row) in reduced.get(name).rows.iter().enumerate() {
                 assert!(!row.is_empty() && row.is_sorted_by_key(|&(column, _)| column));
                 for column in 0..orbits.count() {

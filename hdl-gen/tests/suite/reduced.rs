@@ -50,7 +50,7 @@ pub fn symmetric(orbits: &Orbits, parity: usize, numbers: &[i32]) -> DMatrix<f64
 
 /// A product of the lanes with four times the matrix: on centre lines its blocks have quarters.
 pub fn stored(orbits: &Orbits, parity: usize, dense: &DMatrix<f64>) -> QuantisedMatrix {
-    let folded = FoldedMatrix::new(&(dense * 4.0), parity, orbits);
+    let folded = FoldedMatrix::from_fn(parity, orbits, |row, column| 4.0 * dense[(row, column)]);
     let entry = |row: usize, column: usize| -> Entry {
         let channels = folded.blocks.each_ref().map(|block| block[(row, column)]);
         assert!(channels.iter().all(|value| value.fract() == 0.0));
