@@ -13,6 +13,17 @@ impl Check<'_> {
         DesignError::Value { origin: self.origin.to_owned(), key: key.to_owned(), problem, remedy }
     }
 
+    /// The error of a key, if a rule is broken.
+    pub(crate) fn refuse_if(
+        &self,
+        is_broken: bool,
+        key: &str,
+        problem: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Result<(), DesignError> {
+        if is_broken { Err(self.value(key, problem, remedy)) } else { Ok(()) }
+    }
+
     pub(crate) fn integer(&self, key: &str, value: i64, low: i64, high: i64) -> Result<i64, DesignError> {
         if (low..=high).contains(&value) {
             Ok(value)
