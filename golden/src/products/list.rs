@@ -62,20 +62,10 @@ pub struct ProductList {
 
 /// How the twelve products of Co follow each other. `A_p b` come first: they need nothing but the stress, so that there
 /// is work while the weights are not complete. `g_3q` come next: what follows needs them first.
-const CO_ORDER: [MatrixName; 12] = [
-    MatrixName::A1,
-    MatrixName::A2,
-    MatrixName::A3,
-    MatrixName::D30,
-    MatrixName::D31,
-    MatrixName::D32,
-    MatrixName::D10,
-    MatrixName::D11,
-    MatrixName::D12,
-    MatrixName::D20,
-    MatrixName::D21,
-    MatrixName::D22,
-];
+fn co_order() -> impl Iterator<Item = MatrixName> {
+    let [_, a1, a2, a3, others @ .., d30, d31, d32] = MatrixName::ALL;
+    [a1, a2, a3, d30, d31, d32].into_iter().chain(others)
+}
 
 impl ProductList {
     /// The paper's list: thirteen products, then `u_q = C33 g_3q` (Pinto-Salamanca et al., Sensors 2024, Eqs. 9 to 16).
@@ -85,7 +75,7 @@ impl ProductList {
         let mut list = Self::default();
         let weights = Form::of(Source::Thirteen(MatrixName::C33inv), 1.0);
         list.push(weights, &[Vector::Stress], Epilogue::ClipNegate, Vector::Weight);
-        for name in CO_ORDER {
+        for name in co_order() {
             let source = Source::Thirteen(name);
             match name.product() {
                 None => {
