@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use crate::dead_taxels::DeadTaxels;
 use crate::design::{CalibrationIn, Design};
+use crate::frames::push_row;
 
 /// Why a design has no bank.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
@@ -34,22 +35,18 @@ pub fn to_csv(design: &Design) -> Result<String, NoBank> {
     for taxel in dead.taxels() {
         let _ = write!(text, ",taxel {taxel}");
     }
+    text.push('\n');
     for taxel in 0..taxels {
         let of_taxel = |values: fn(&crate::design::Calibration) -> &Vec<f64>, absent: f64| {
             input.calibration.as_ref().map_or(absent, |calibration| values(calibration)[taxel])
         };
         let gain = if input.dead.contains(&taxel) { 0.0 } else { of_taxel(|of| &of.gain, 1.0) };
-        let _ = write!(text, "\n{gain:?},{:?}", of_taxel(|of| &of.offset, 0.0));
-        for weights in dead.weights() {
-            let _ = write!(text, ",{:?}", weights[taxel]);
-        }
+        let weights = dead.weights().iter().map(|weights| weights[taxel]);
+        push_row(&mut text, [gain, of_taxel(|of| &of.offset, 0.0)].into_iter().chain(weights));
     }
     if let Some(curve) = &input.curve {
-        text.push_str("\ncount,pascals");
-        for [count, pascals] in &curve.points {
-            let _ = write!(text, "\n{count:?},{pascals:?}");
-        }
+        text += "count,pascals\n";
+        text += &curve.to_csv();
     }
-    text.push('\n');
     Ok(text)
 }

@@ -1,11 +1,10 @@
 //! Gain and offset of each taxel: the file that `[sensor] calibration` names.
 
-use std::fmt::Write;
-
 use super::DesignError;
 use super::curve::{Curve, is_header_of_points};
 use super::files::Beside;
 use super::rows::{Row, Rows};
+use crate::frames::push_row;
 
 /// Range of a live taxel's gain.
 const GAIN: [f64; 2] = [1e-9, 16.0];
@@ -80,10 +79,8 @@ impl Calibration {
     /// The file that reads back as the same bits.
     pub fn to_csv(&self) -> String {
         let mut text = String::new();
-        for (gain, offset) in self.gain.iter().zip(&self.offset) {
-            // Writing to a String cannot fail.
-            let _ = writeln!(text, "{gain:?},{offset:?}");
-        }
+        let rows = self.gain.iter().zip(&self.offset);
+        rows.for_each(|(&gain, &offset)| push_row(&mut text, [gain, offset].into_iter()));
         text
     }
 }

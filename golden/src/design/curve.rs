@@ -1,13 +1,12 @@
 //! The curve from counts to pascals of a sensor that is not linear.
 
-use std::fmt::Write;
-
 use super::DesignError;
 use super::checks::Check;
 use super::files::Beside;
 use super::hardware::{Hardware, Samples};
 use super::keys::CurveKey;
 use super::rows::{Row, Rows};
+use crate::frames::push_row;
 
 /// Most segments of a curve.
 pub const MOST_SEGMENTS: usize = 64;
@@ -162,11 +161,10 @@ impl Curve {
     }
 
     /// The file that reads back as the same points.
-    pub(super) fn to_csv(&self) -> String {
+    pub(crate) fn to_csv(&self) -> String {
         let mut text = String::new();
-        for [count, pascals] in &self.points {
-            // Writing to a String cannot fail.
-            let _ = writeln!(text, "{count:?},{pascals:?}");
+        for point in &self.points {
+            push_row(&mut text, point.iter().copied());
         }
         text
     }
