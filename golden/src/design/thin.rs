@@ -1,16 +1,48 @@
 //! Layers so thin that a contact's edge falls between the taxels.
 
 use super::Design;
-use crate::estimators;
+use crate::kernel::{self, Kernel};
+
+/// Depth over the coarser pitch below which no kernel and no correction serve.
+const LEAST: f64 = 0.3;
+const BELOW: &str = "take a thicker layer or a finer pitch";
+const TENTHS: &str = "tangential forces are off by tenths of F_z";
 
 impl Design {
-    /// What to tell whose layer is too thin for its taxels; `None` if it is not. How thin is too thin, the estimator says.
+    /// What to tell whose layer is too thin for its taxels; `None` if it is not.
+    ///
+    /// Below the limits, depths over the coarser pitch, forces are wrong by more than a few percent: of 200 unseen round
+    /// contacts at each depth (`docs/explanation/accuracy.md`, "Thin layers"). The grid search's gain makes up for the
+    /// normal force, its correction for part of the rest. That part is larger where forces are spread over their cells:
+    /// through a thin layer a point force beside a taxel hardly reaches it.
     pub fn thin_layer(&self) -> Option<String> {
-        let depth = self.sensor.depth_by_pitch();
-        let thin = estimators::thin(self.algorithm.constants(), &self.sensor, self.algorithm.kernel);
-        self.sensor.is_thinner_than(thin.limit).then(|| {
-            let remedy = thin.remedy;
-            format!("the layer is {depth:.2} of a pitch thin, so that contacts fall between the taxels: {remedy}")
+        let (sensor, kernel) = (&self.sensor, self.algorithm.kernel);
+        let has_correction = self.algorithm.constants().map(|joint| joint.correction.is_some());
+        let (limit, wrong, remedy) = match (has_correction, kernel) {
+            // By the line search what falls between the taxels is lost.
+            (None, _) => {
+                let short = 100.0 * (1.0 - 1.0 / kernel::gain(sensor, kernel));
+                let wrong = match short {
+                    1.0.. => format!("by the line search F_z comes out {short:.0} % too small"),
+                    // With the "cell" kernel.
+                    _ => format!("by the line search {TENTHS}"),
+                };
+                (0.75, wrong, "write estimator = \"joint\"")
+            }
+            (Some(false), Kernel::Point) => (0.5, TENTHS.into(), "kernel = \"cell\" and sptfra calibrate serve to 0.3"),
+            (Some(false), Kernel::Cell) => (0.4, TENTHS.into(), "sptfra calibrate serves down to 0.3"),
+            (Some(true), Kernel::Point) => {
+                let remedy = "kernel = \"cell\", calibrated anew, serves down to 0.3";
+                (0.4, "many frames have no direction".into(), remedy)
+            }
+            (Some(true), Kernel::Cell) => (LEAST, "one contact in twenty is off by a tenth of F_z".into(), BELOW),
+        };
+        let remedy = if has_correction.is_some() && sensor.is_thinner_than(LEAST) { BELOW } else { remedy };
+        let depth = sensor.depth_by_pitch();
+        sensor.is_thinner_than(limit).then(|| {
+            format!(
+                "the layer is {depth:.2} of a pitch thin, so that contacts fall between the taxels: {wrong}; {remedy}"
+            )
         })
     }
 }

@@ -1,19 +1,17 @@
 //! The friction estimators, and what all of them have in common.
 //!
 //! An estimator finds the friction components of a frame from what either plan knows of it, [`Inputs`]. Each has a folder of
-//! its own; outside of it the registry here, the design file's parser and the calibration, which is the joint one's, know
-//! its name. `docs/explanation/estimators.md` compares them.
+//! its own. Outside of it its name is known to the registry here, the design file's parser, the warning of thin layers, and
+//! the calibration, which is the joint one's. `docs/explanation/estimators.md` compares them.
 
 mod interface;
 pub mod joint;
 pub mod line;
 pub(crate) mod standard_error;
-mod thin;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::kernel::Kernel;
 use crate::sensor::Sensor;
 use crate::words::print_as_words;
 pub use interface::{Contact, RANGE};
@@ -21,7 +19,6 @@ pub(crate) use interface::{Estimate, Inputs};
 use joint::{Joint, JointConstants, JointScratch};
 use line::LineScratch;
 pub use standard_error::{BORDER, ERROR_FRACTION, ERROR_RANGE, StandardError, log as error_log};
-pub(crate) use thin::Thin;
 
 /// How the friction components are found once the optimisation problem is set up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -42,11 +39,6 @@ impl Estimator {
     pub fn is_calibrated(self) -> bool {
         self == Self::Joint
     }
-}
-
-/// How thin a layer may be for an estimator: the grid search with its constants, or the line search, which has none.
-pub(crate) fn thin(constants: Option<&JointConstants>, sensor: &Sensor, kernel: Kernel) -> Thin {
-    constants.map_or_else(|| line::thin(sensor, kernel), |joint| joint.thin(sensor, kernel))
 }
 
 /// An estimator, ready for frames: the grid search, or else the line search.

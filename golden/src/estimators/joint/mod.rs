@@ -9,7 +9,6 @@ mod features;
 mod grid;
 mod level_set;
 mod network;
-mod thin;
 mod weights;
 
 use super::interface::{Estimate, Inputs, RANGE};

@@ -2,12 +2,10 @@
 //! tell, found where the tension under the normal forces is least.
 
 mod level_set;
-mod thin;
 
 use super::interface::{Contact, RANGE};
 use crate::status::Status;
 pub use level_set::LineScratch;
-pub(crate) use thin::thin;
 
 /// Coefficients of the line at or above this magnitude make it degenerate: it is then all but parallel to the axis
 /// of the dependent component, and the direction tells nothing.
