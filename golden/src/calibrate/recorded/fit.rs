@@ -1,7 +1,7 @@
 //! Curve and gains from holds, in turns, each with the other as it is.
 
-use super::folds::Folds;
-use super::gains::{Evidence, NOISES, Prior, RANGES, Shares};
+use super::folds::{Folds, levels};
+use super::gains::{NOISES, Prior, RANGES, Shares};
 use super::holds::Holds;
 use super::readings::Readings;
 use super::rows::Rows;
@@ -17,6 +17,8 @@ pub(super) const AS_GOOD: f64 = 1.05;
 pub(super) const ALIKE: f64 = 3e-3;
 /// A better error that is within so many of its standard deviations is chance.
 const CHANCE: f64 = 1.5;
+/// Fewer places tell no gains of taxels.
+const PLACES: usize = 6;
 /// Straight pieces need so many holds.
 const MANY: usize = 20;
 /// Gains must lower the error to this share to be fitted.
@@ -31,6 +33,9 @@ pub(super) struct Work<'a> {
     design: &'a Design,
     pub(super) holds: &'a Holds,
     pub(super) loads: Vec<f64>,
+    /// Ranges of loads that are one, from the smallest on.
+    pub(super) levels: Vec<[f64; 2]>,
+    pub(super) folds: Option<Folds>,
     trust: Vec<f64>,
     pub(super) readings: Readings,
     knots: Vec<f64>,
@@ -46,6 +51,9 @@ pub(super) struct Work<'a> {
 pub(super) struct Found {
     pub(super) shape: Shape,
     pub(super) delta: Vec<f64>,
+    pub(super) kind: Kind,
+    /// What the gains were found with; nothing if they stay as they are.
+    pub(super) prior: Option<Prior>,
 }
 
 /// Errors that cross-validation found, as shares of the loads: one a hold.
@@ -84,7 +92,24 @@ impl<'a> Work<'a> {
         let x: Vec<&[f64]> = holds.all.iter().map(|hold| hold.x.as_slice()).collect();
         let knots = shape::knots(&x, holds.noise.unwrap_or(0.0));
         let own = readings.own(&design.input);
-        (Self { design, holds, loads, trust, readings, knots, before, own, rows }, lost)
+        let (levels, folds) = (levels(loads.iter().copied()), Folds::new(&holds.all));
+        (Self { design, holds, loads, levels, folds, trust, readings, knots, before, own, rows }, lost)
+    }
+
+    /// Smallest and largest load.
+    pub(super) fn range(&self) -> [f64; 2] {
+        [self.levels[0][0], self.levels[self.levels.len() - 1][1]]
+    }
+
+    /// The largest load by the smallest.
+    pub(super) fn span(&self) -> f64 {
+        let [low, high] = self.range();
+        high / low
+    }
+
+    /// For each part that cross-validation leaves out, the holds to fit to and those left out.
+    fn parts(&self) -> impl Iterator<Item = [Vec<usize>; 2]> {
+        self.folds.iter().flat_map(Folds::parts)
     }
 
     /// Readings of the holds.
@@ -150,23 +175,24 @@ impl<'a> Work<'a> {
     }
 
     /// The error of a kind of curve, with gains as they are.
-    fn validate_kind(&self, kind: Kind, weights: &[Vec<f64>], folds: &Folds) -> Validated {
+    fn validate_kind(&self, kind: Kind, weights: &[Vec<f64>]) -> Validated {
         let x = self.x();
         let terms = self.terms(weights, &x);
         let errors =
-            folds.parts().flat_map(|[kept, left]| self.errors(&shape::fit(kind, &terms, &kept), weights, &left));
+            self.parts().flat_map(|[kept, left]| self.errors(&shape::fit(kind, &terms, &kept), weights, &left));
         self.figure(errors.collect())
     }
 
-    /// Chooses the kind of curve among some, in the order of how much they ask: the first that is as good as the best.
-    fn choose_kind(&self, kinds: &[Kind], delta: &[f64], folds: Option<&Folds>) -> Kind {
-        let (Some(folds), [first, _, ..]) = (folds, kinds) else { return kinds[0] };
+    /// Chooses the kind of curve, in the order of how much they ask: the first that is as good as the best.
+    fn choose_kind(&self, delta: &[f64]) -> Kind {
+        let kinds = self.kinds();
+        let [first, _, ..] = kinds[..] else { return kinds[0] };
         let weights = self.weights(delta);
-        let scores: Vec<Validated> = kinds.iter().map(|&kind| self.validate_kind(kind, &weights, folds)).collect();
-        let Some(best) = scores.iter().min_by(|a, b| a.rms.total_cmp(&b.rms)) else { return *first };
+        let scores: Vec<Validated> = kinds.iter().map(|&kind| self.validate_kind(kind, &weights)).collect();
+        let Some(best) = scores.iter().min_by(|a, b| a.rms.total_cmp(&b.rms)) else { return first };
         let good =
             scores.iter().position(|score| score.rms <= AS_GOOD * best.rms + ALIKE || self.is_chance(score, best));
-        good.map_or(*first, |good| kinds[good])
+        good.map_or(first, |good| kinds[good])
     }
 
     /// Whether the second errs less by chance only: by its squared errors, hold by hold.
@@ -203,7 +229,7 @@ impl<'a> Work<'a> {
     }
 
     /// The prior under which gains err least, if they make the error clearly less than none do.
-    fn choose_prior(&self, shape: &Shape, folds: &Folds) -> Option<Prior> {
+    fn choose_prior(&self, shape: &Shape) -> Option<Prior> {
         let shares = self.shares(shape);
         let plain: Vec<f64> = shares.loads(&vec![0.0; self.before.len()]);
         let wanted: Vec<f64> = plain.iter().map(|load| 1.0 - load).collect();
@@ -212,7 +238,7 @@ impl<'a> Work<'a> {
         for range in RANGES {
             let field = shares.with(&self.design.sensor, range);
             for noise in NOISES {
-                let errors = folds.parts().flat_map(|[kept, left]| {
+                let errors = self.parts().flat_map(|[kept, left]| {
                     let loads = shares.loads(&field.fit(&kept, &wanted, noise));
                     left.into_iter().map(move |hold| (hold, loads[hold] - 1.0))
                 });
@@ -232,18 +258,19 @@ impl<'a> Work<'a> {
         shares.around_mean(holds, &delta)
     }
 
-    /// What the recording says of each taxel's gain.
-    pub(super) fn told(&self, shape: &Shape, prior: Option<Prior>) -> Vec<Evidence> {
-        let shares = self.shares(shape);
-        let Prior { range, noise } = prior.unwrap_or(Prior { range: 0.0, noise: f64::INFINITY });
+    /// Whether the recording says more of each taxel's gain than was assumed; nothing of one that no contact was on.
+    pub(super) fn told(&self, found: &Found) -> Vec<Option<bool>> {
+        let shares = self.shares(&found.shape);
+        let Prior { range, noise } = found.prior.unwrap_or(Prior { range: 0.0, noise: f64::INFINITY });
         shares.with(&self.design.sensor, range).told(noise.min(1e12))
     }
 
     /// The kinds of curve that loads so many and so far apart may tell.
-    pub(super) fn kinds(&self, levels: usize, span: f64, folds: Option<&Folds>) -> Vec<Kind> {
+    pub(super) fn kinds(&self) -> Vec<Kind> {
+        let (levels, span) = (self.levels.len(), self.span());
         let has_curve = self.design.input.curve.is_some();
         let mut kinds = if has_curve { vec![Kind::Own, Kind::Line] } else { vec![Kind::Line] };
-        if folds.is_none() || levels < 2 || span < 1.5 {
+        if self.folds.is_none() || levels < 2 || span < 1.5 {
             kinds.truncate(1);
             return kinds;
         }
@@ -259,45 +286,42 @@ impl<'a> Work<'a> {
         self.knots.last().copied().unwrap_or(1.0)
     }
 
-    /// Finds curve and gains; the kind of curve and the prior of the gains that were chosen.
-    pub(super) fn find(
-        &mut self,
-        kinds: &[Kind],
-        gains: Option<&Folds>,
-        folds: Option<&Folds>,
-        solver: &mut Rows,
-    ) -> (Found, Kind, Option<Prior>) {
+    /// Whether contacts are at places enough to tell gains of taxels.
+    pub(super) fn tells_gains(&self) -> bool {
+        self.holds.places >= PLACES && self.folds.as_ref().is_some_and(|folds| folds.what == "places")
+    }
+
+    /// Finds curve and gains.
+    pub(super) fn find(&mut self, solver: &mut Rows) -> Found {
         let all: Vec<usize> = (0..self.loads.len()).collect();
         let none = vec![0.0; self.before.len()];
-        let mut found = Found { shape: self.fit_shape(kinds[0], &none, &all), delta: none.clone() };
-        let (mut kind, mut prior) = (kinds[0], None);
+        let kind = self.kinds()[0];
+        let mut found = Found { shape: self.fit_shape(kind, &none, &all), delta: none.clone(), kind, prior: None };
         for round in 0..ROUNDS {
             self.look(&found, solver);
             if round < 2 {
-                kind = self.choose_kind(kinds, &found.delta, folds);
+                found.kind = self.choose_kind(&found.delta);
             }
-            found.shape = self.fit_shape(kind, &found.delta, &all);
-            if round < 2 {
-                prior = gains.and_then(|folds| {
-                    self.choose_prior(&found.shape, folds).filter(|&prior| self.is_better(kind, prior, folds))
-                });
+            found.shape = self.fit_shape(found.kind, &found.delta, &all);
+            if round < 2 && self.tells_gains() {
+                found.prior = self.choose_prior(&found.shape).filter(|&prior| self.is_better(found.kind, prior));
             }
-            found.delta = prior.map_or_else(|| none.clone(), |prior| self.fit_gains(&found.shape, prior, &all));
-            found.shape = self.fit_shape(kind, &found.delta, &all);
+            found.delta = found.prior.map_or_else(|| none.clone(), |prior| self.fit_gains(&found.shape, prior, &all));
+            found.shape = self.fit_shape(found.kind, &found.delta, &all);
         }
-        (found, kind, prior)
+        found
     }
 
     /// Whether gains clearly lower the error at what was left out while everything was fitted, and do not raise its median.
-    fn is_better(&self, kind: Kind, prior: Prior, folds: &Folds) -> bool {
-        let [with, without] = [Some(prior), None].map(|prior| self.validate(kind, prior, folds));
+    fn is_better(&self, kind: Kind, prior: Prior) -> bool {
+        let [with, without] = [Some(prior), None].map(|prior| self.validate(kind, prior));
         let median = |of: &Validated| middle(of.errors.iter().map(|error| error.abs()));
         with.rms < BETTER * without.rms - ALIKE && median(&with) <= median(&without) && !self.is_chance(&without, &with)
     }
 
     /// The errors at what was left out while everything was fitted to the rest.
-    pub(super) fn validate(&self, kind: Kind, prior: Option<Prior>, folds: &Folds) -> Validated {
-        let errors = folds.parts().flat_map(|[kept, left]| {
+    pub(super) fn validate(&self, kind: Kind, prior: Option<Prior>) -> Validated {
+        let errors = self.parts().flat_map(|[kept, left]| {
             let mut delta = vec![0.0; self.before.len()];
             let mut shape = self.fit_shape(kind, &delta, &kept);
             if let Some(prior) = prior {
@@ -313,9 +337,9 @@ impl<'a> Work<'a> {
 
     /// Standard deviation of the gains, and how far those of one half of the parts are from the other's: root mean square over
     /// the square root of two.
-    pub(super) fn halves(&self, found: &Found, prior: Prior, folds: &Folds) -> [f64; 2] {
+    pub(super) fn halves(&self, found: &Found, prior: Prior) -> [f64; 2] {
         let half =
-            |odd: usize| -> Vec<usize> { folds.parts().skip(odd).step_by(2).flat_map(|[_, left]| left).collect() };
+            |odd: usize| -> Vec<usize> { self.parts().skip(odd).step_by(2).flat_map(|[_, left]| left).collect() };
         let [a, b] = [0, 1].map(|odd| self.fit_gains(&found.shape, prior, &half(odd)));
         let touched: Vec<usize> = (0..a.len()).filter(|&taxel| found.delta[taxel] != 0.0).collect();
         let rms = |of: &dyn Fn(usize) -> f64| {

@@ -1,8 +1,6 @@
 //! Constants from frames with measured forces.
 
 use super::fit::{Validated, Work};
-use super::folds::{Folds, levels};
-use super::gains::Evidence;
 use super::loads::Follow;
 use super::report::{Errors, Hold, Recorded, TaxelGain};
 use super::rows::Rows;
@@ -14,8 +12,6 @@ use crate::design::Design;
 use crate::numbers::{counted, magnitude, middle};
 use crate::solver::{Solver, Status};
 
-/// Fewer places tell no gains of taxels.
-const PLACES: usize = 6;
 /// A correlation of loads found and measured below this means that they do not belong together.
 const FOLLOWS: f64 = 0.5;
 /// Loads of this share of the largest are solved again with what was found,
@@ -55,34 +51,26 @@ pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> 
     if work.loads.is_empty() {
         return Err(wrong(("no hold has an answer".to_owned(), "run `sptfra check` on the frames".to_owned())));
     }
-    let folds = Folds::new(&work.holds.all);
-    let steps = levels(work.loads.iter().copied());
-    let span = steps.last().map_or(1.0, |last| last[1]) / steps[0][0];
-    let kinds = work.kinds(steps.len(), span, folds.as_ref());
-    let places = work.holds.places;
-    let many = folds.as_ref().filter(|folds| folds.what == "places" && places >= PLACES);
-    let (found, kind, prior) = work.find(&kinds, many, folds.as_ref(), &mut solver);
+    let found = work.find(&mut solver);
     let follows = work.follows(&found);
-    if steps.len() > 1 && span > 1.3 && follows < FOLLOWS {
+    if work.levels.len() > 1 && work.span() > 1.3 && follows < FOLLOWS {
         return Err(wrong((
             format!("what the frames read does not go with the forces (correlation {follows:.2})"),
             "check that each line of the forces belongs to the frame of the same number".to_owned(),
         )));
     }
-    let told = work.told(&found.shape, prior);
+    let told = work.told(&found);
     let fitted = work.fitted(&found);
-    let left_out = folds.as_ref().map(|folds| work.validate(kind, prior, folds));
-    let plain = folds.as_ref().map(|folds| work.validate(kinds[0], None, folds));
+    let left_out = work.folds.is_some().then(|| work.validate(found.kind, found.prior));
+    let plain = work.folds.is_some().then(|| work.validate(work.kinds()[0], None));
     let stresses: Vec<Vec<f64>> = work.holds.all.iter().map(|hold| work.stress(&found, &hold.x)).collect();
     let largest = stresses.iter().map(magnitude).fold(0.0, f64::max);
     let gains: Vec<f64> = found.delta.iter().zip(&work.before).map(|(delta, before)| before * (1.0 + delta)).collect();
-    let heavy = |load: f64| load >= HEAVY * steps.last().map_or(0.0, |last| last[1]);
-    let pressed = stresses.iter().zip(&work.loads).filter(|(_, load)| heavy(**load));
+    let pressed = stresses.iter().zip(&work.loads).filter(|(_, load)| **load >= HEAVY * work.range()[1]);
     let range = [pressed.map(|(stress, _)| magnitude(stress)).fold(f64::INFINITY, f64::min), largest];
     let mut calibrated = work.readings.calibrated(design, &found.shape, &gains, range, &mut remarks);
     remarks.extend(work.readings.far_from(design, &calibrated));
-    let halves = prior.zip(folds.as_ref()).map(|(prior, folds)| work.halves(&found, prior, folds));
-    let friction = friction::fit(&mut calibrated, &work.holds.all, &stresses, folds.as_ref())?;
+    let friction = friction::fit(&mut calibrated, &work.holds.all, &stresses, work.folds.as_ref())?;
     remarks.extend(verify(&calibrated, frames, &work, &fitted)?);
     let validated = left_out.as_ref().unwrap_or(&fitted);
     let shown = work.holds.all.iter().zip(&validated.errors).map(|(hold, error)| Hold {
@@ -93,8 +81,8 @@ pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> 
     });
     let gains = gains.iter().zip(&told).map(|(&gain, told)| TaxelGain {
         gain,
-        touched: *told != Evidence::None,
-        told: *told == Evidence::Good && prior.is_some(),
+        touched: told.is_some(),
+        told: *told == Some(true) && found.prior.is_some(),
     });
     let mut recorded = Recorded {
         holds: shown.collect(),
@@ -104,28 +92,14 @@ pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> 
         errors_fitted: Some(Errors::of(fitted.errors.iter().copied())),
         points: work.readings.points(&calibrated.input),
         contacts: work.holds.contacts,
-        places,
-        loads: [steps[0][0], steps.last().map_or(0.0, |last| last[1])],
+        places: work.holds.places,
+        loads: work.range(),
         determined: Vec::new(),
         undetermined: Vec::new(),
         remarks,
         design: calibrated,
     };
-    report::say(
-        &mut recorded,
-        &report::Facts {
-            work: &work,
-            kinds: &kinds,
-            kind,
-            found: &found,
-            prior,
-            folds: folds.as_ref(),
-            levels: steps.len(),
-            span,
-            friction,
-            halves,
-        },
-    );
+    report::say(&mut recorded, &work, &found, friction);
     Ok(recorded)
 }
 
@@ -143,7 +117,7 @@ fn verify(
         RecordedError::of(design, (problem, remedy.to_owned()))
     };
     let solver = Solver::new(design)?;
-    let largest = work.loads.iter().fold(0.0_f64, |most, &load| most.max(load));
+    let [_, largest] = work.range();
     let step = frames.len().div_ceil(SOLVED);
     let (mut errors, mut fits, mut counts) = (Vec::new(), Vec::new(), [0; 2]);
     for (index, hold) in work.holds.all.iter().enumerate().filter(|(_, hold)| hold.load >= HEAVY * largest) {

@@ -19,11 +19,8 @@ const BETTER: f64 = 0.95;
 /// Ranges of c1, as in the design file.
 const LINEAR: [f64; 2] = [0.1, 10.0];
 
-/// What was made of the tangential forces.
-pub(super) enum Verdict {
-    Fitted(String),
-    Not(String),
-}
+/// What was made of the tangential forces, or why nothing was.
+pub(super) type Verdict = Result<String, String>;
 
 /// Fits `friction_correction` of a calibrated design to holds with their stress that presses.
 pub(super) fn fit(
@@ -32,7 +29,7 @@ pub(super) fn fit(
     stresses: &[Vec<f64>],
     folds: Option<&Folds>,
 ) -> Result<Verdict, RecordedError> {
-    let not = |words: String| Ok(Verdict::Not(format!("friction: {words}")));
+    let not = |words: String| Ok(Err(format!("friction: {words}")));
     let known: Vec<usize> =
         (0..holds.len()).filter(|&h| holds[h].force[0].is_some() && holds[h].force[1].is_some()).collect();
     if known.is_empty() {
@@ -111,7 +108,7 @@ pub(super) fn fit(
     }
     design.algorithm.joint.friction_correction = constants;
     let [c1, c3] = constants;
-    Ok(Verdict::Fitted(format!(
+    Ok(Ok(format!(
         "friction: friction_correction = [{c1:.3}, {c3:.3}]; (F_x, F_y) have an error of {:.1} % of F_z where left out, {:.1} % with the old constants (root mean square of {} holds)",
         100.0 * now,
         100.0 * as_it_was,

@@ -26,16 +26,6 @@ pub(super) struct Prior {
     pub(super) noise: f64,
 }
 
-/// How much a recording says of a taxel's gain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Evidence {
-    /// No contact was on it: the gain is what it was.
-    None,
-    /// The prior says more than the recording.
-    Faint,
-    Good,
-}
-
 /// Shares of the taxels in the loads: rows of X, `weight * pascals / load`, one a hold.
 pub(super) struct Shares {
     x: DMatrix<f64>,
@@ -112,19 +102,16 @@ impl Field<'_> {
             .collect()
     }
 
-    /// What all holds together say of each taxel.
-    pub(super) fn told(&self, noise: f64) -> Vec<Evidence> {
+    /// Whether all holds together say more of each taxel than the prior does; nothing of one that no contact was on.
+    pub(super) fn told(&self, noise: f64) -> Vec<Option<bool>> {
         let holds: Vec<usize> = (0..self.among.nrows()).collect();
         let factors = self.factors(&holds, noise);
         (0..self.across.nrows())
             .map(|taxel| {
-                let Some(factors) = factors.as_ref().filter(|_| self.shares.touched[taxel]) else {
-                    return Evidence::None;
-                };
+                let factors = factors.as_ref().filter(|_| self.shares.touched[taxel])?;
                 let row = self.across.row(taxel).transpose();
                 // The variance before is 1 for every range.
-                let left = 1.0 - row.dot(&factors.solve(&row));
-                if left < TOLD { Evidence::Good } else { Evidence::Faint }
+                Some(1.0 - row.dot(&factors.solve(&row)) < TOLD)
             })
             .collect()
     }

@@ -1,17 +1,14 @@
 //! What a recording could tell, in plain words.
 
-use std::fmt::Write;
-
 use serde::Serialize;
 
 use super::fit::{Found, Work};
 use super::folds::Folds;
 use super::friction::Verdict;
-use super::gains::Prior;
-use super::shape::{Kind, Shape};
+use super::shape::Shape;
 use super::table::{Measured, Pairing};
 use crate::design::{Curve, Design};
-use crate::numbers::{middle, sorted};
+use crate::numbers::{counted, middle, sorted};
 
 /// Median and worst error of loads, in percent, above which frames without times may be missing.
 const MISSING: [f64; 2] = [15.0, 100.0];
@@ -123,41 +120,23 @@ impl Errors {
     }
 }
 
-/// What the words are made of.
-pub(super) struct Facts<'a> {
-    pub(super) work: &'a Work<'a>,
-    pub(super) kinds: &'a [Kind],
-    pub(super) kind: Kind,
-    pub(super) found: &'a Found,
-    pub(super) prior: Option<Prior>,
-    pub(super) folds: Option<&'a Folds>,
-    pub(super) levels: usize,
-    pub(super) span: f64,
-    pub(super) friction: Verdict,
-    /// How far the gains of taxels differ, and those from one half of the recording from the other's.
-    pub(super) halves: Option<[f64; 2]>,
-}
-
 /// Puts everything into words.
-pub(super) fn say(recorded: &mut Recorded, facts: &Facts<'_>) {
-    force(recorded, facts);
-    curve(recorded, facts);
-    gains(recorded, facts);
-    match &facts.friction {
-        Verdict::Fitted(words) => recorded.determined.push(words.clone()),
-        Verdict::Not(words) => recorded.undetermined.push(words.clone()),
-    }
-    spread(recorded, facts);
+pub(super) fn say(recorded: &mut Recorded, work: &Work<'_>, found: &Found, friction: Verdict) {
+    force(recorded, work, found);
+    curve(recorded, work, found);
+    gains(recorded, work, found);
+    friction.map_or_else(|words| recorded.undetermined.push(words), |words| recorded.determined.push(words));
+    spread(recorded, work);
 }
 
-fn force(recorded: &mut Recorded, facts: &Facts<'_>) {
-    if let (Some(errors), Some(folds)) = (&recorded.errors, facts.folds) {
+fn force(recorded: &mut Recorded, work: &Work<'_>, found: &Found) {
+    if let (Some(errors), Some(folds)) = (&recorded.errors, &work.folds) {
         let before = recorded.errors_as_designed.as_ref().map_or(0.0, |errors| errors.median);
-        let than = facts.kinds[0].name();
-        let better = if facts.kind == facts.kinds[0] && facts.prior.is_none() {
+        let plain = work.kinds()[0];
+        let better = if found.kind == plain && found.prior.is_none() {
             String::new()
         } else {
-            format!("; with {than} and one gain the median is {before:.1} %")
+            format!("; with {} and one gain the median is {before:.1} %", plain.name())
         };
         let Folds { what, groups, .. } = folds;
         let words = errors.words();
@@ -169,7 +148,7 @@ fn force(recorded: &mut Recorded, facts: &Facts<'_>) {
                 .to_owned(),
         );
     }
-    if recorded.places < 4 && facts.folds.is_some() {
+    if recorded.places < 4 && work.folds.is_some() {
         recorded.undetermined.push(format!(
             "other places: all contacts are at {}; taxels elsewhere were not measured",
             if recorded.places == 1 { "one place".to_owned() } else { format!("{} places", recorded.places) }
@@ -177,26 +156,26 @@ fn force(recorded: &mut Recorded, facts: &Facts<'_>) {
     }
 }
 
-fn curve(recorded: &mut Recorded, facts: &Facts<'_>) {
+fn curve(recorded: &mut Recorded, work: &Work<'_>, found: &Found) {
     let loads = {
         let [low, high] = recorded.loads;
-        if facts.levels == 1 {
+        if work.levels.len() == 1 {
             format!("one load ({} N)", short(low))
         } else {
-            format!("{} loads from {} to {} N", facts.levels, short(low), short(high))
+            format!("{} loads from {} to {} N", work.levels.len(), short(low), short(high))
         }
     };
-    let top = facts.work.largest();
-    if facts.kinds.len() == 1 {
-        let why = if facts.folds.is_none() { "nothing could check it" } else { "they are too close to each other" };
-        let why = if facts.levels == 1 { "a curve takes at least two, better five" } else { why };
+    let top = work.largest();
+    if work.kinds().len() == 1 {
+        let why = if work.folds.is_none() { "nothing could check it" } else { "they are too close to each other" };
+        let why = if work.levels.len() == 1 { "a curve takes at least two, better five" } else { why };
         recorded.undetermined.push(format!(
             "curve: {loads}: {why}; it stays {}. Record loads of which the largest is five times the smallest",
-            facts.kind.name()
+            found.kind.name()
         ));
         return;
     }
-    let line = match &facts.found.shape {
+    let line = match &found.shape {
         Shape::Own(factor) => {
             format!("curve: the design's own, times {:.3}; no other shape has a smaller error", factor.abs())
         }
@@ -205,7 +184,7 @@ fn curve(recorded: &mut Recorded, facts: &Facts<'_>) {
         }
         Shape::Power { power, scale, .. } => {
             // Before a gain of their own, and but for noise.
-            let count = match (facts.work.readings.sign * facts.work.readings.base).round() {
+            let count = match (work.readings.sign * work.readings.base).round() {
                 0.0 => "count".to_owned(),
                 rest => format!("|count - {rest}|"),
             };
@@ -214,7 +193,7 @@ fn curve(recorded: &mut Recorded, facts: &Facts<'_>) {
         Shape::Pieces { slopes, .. } => format!("curve: {} straight pieces, from {loads}", slopes.len()),
     };
     recorded.determined.push(line);
-    match (&facts.found.shape, &recorded.design.input.curve) {
+    match (&found.shape, &recorded.design.input.curve) {
         (Shape::Own(_) | Shape::Line(_), _) => {}
         (_, Some(Curve { law: Some(_), .. })) => {
             recorded.remarks.push(format!(
@@ -226,10 +205,10 @@ fn curve(recorded: &mut Recorded, facts: &Facts<'_>) {
              \"saturated\". Record heavier loads if there are any"
         )),
     }
-    if facts.span < 3.0 {
+    if work.span() < 3.0 {
         recorded
             .remarks
-            .push(format!("the largest load is {:.1} times the smallest: the curve is known there only", facts.span));
+            .push(format!("the largest load is {:.1} times the smallest: the curve is known there only", work.span()));
     }
 }
 
@@ -238,7 +217,7 @@ fn short(value: f64) -> String {
     format!("{value:.3}").trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-fn gains(recorded: &mut Recorded, facts: &Facts<'_>) {
+fn gains(recorded: &mut Recorded, work: &Work<'_>, found: &Found) {
     let count = recorded.gains.len();
     let untouched: Vec<usize> = (0..count).filter(|&taxel| !recorded.gains[taxel].touched).collect();
     let told = recorded.gains.iter().filter(|gain| gain.told).count();
@@ -246,16 +225,11 @@ fn gains(recorded: &mut Recorded, facts: &Facts<'_>) {
         let shown: Vec<String> = taxels.iter().take(12).map(usize::to_string).collect();
         format!("{}{}", shown.join(", "), if taxels.len() > 12 { ", …" } else { "" })
     };
-    let Some(prior) = facts.prior else {
-        let why = match facts.folds {
-            Some(folds) if folds.what == "places" && recorded.places >= 6 => {
-                "taxels' own gains do not reduce the error at other places".to_owned()
-            }
-            _ => format!(
-                "contacts at {} place{} do not determine single taxels",
-                recorded.places,
-                if recorded.places == 1 { "" } else { "s" }
-            ),
+    let Some(prior) = found.prior else {
+        let why = if work.tells_gains() {
+            "taxels' own gains do not reduce the error at other places".to_owned()
+        } else {
+            format!("contacts at {} do not determine single taxels", counted(recorded.places, "place"))
         };
         recorded.undetermined.push(format!(
             "gains: {why}; they stay as they are. Record contacts on every second taxel, or a bladder (--uniform)"
@@ -267,19 +241,14 @@ fn gains(recorded: &mut Recorded, facts: &Facts<'_>) {
     } else {
         "each for itself".to_owned()
     };
-    let mut line = format!("gains: {told} of {count} taxels, {smooth}");
-    if let Some([differ, apart]) = facts.halves {
-        let _ = write!(
-            line,
-            "; they differ by {:.1} %, gains from the two halves of the recording by {:.1} %",
-            100.0 * differ,
-            100.0 * apart
-        );
-        if apart > 0.7 * differ {
-            line.push_str(": a trend rather than each taxel's own gain");
-        }
-    }
-    recorded.determined.push(line);
+    let [differ, apart] = work.halves(found, prior);
+    let trend = if apart > 0.7 * differ { ": a trend rather than each taxel's own gain" } else { "" };
+    recorded.determined.push(format!(
+        "gains: {told} of {count} taxels, {smooth}; they differ by {:.1} %, gains from the two halves of the recording by \
+         {:.1} %{trend}",
+        100.0 * differ,
+        100.0 * apart
+    ));
     let hardly = count - told - untouched.len();
     if hardly > 0 {
         recorded.undetermined.push(format!("gains: {hardly} of {count} taxels had too little load to determine theirs; they are drawn towards the others"));
@@ -294,8 +263,8 @@ fn gains(recorded: &mut Recorded, facts: &Facts<'_>) {
 }
 
 /// How well the sensor repeats, and how it creeps.
-fn spread(recorded: &mut Recorded, facts: &Facts<'_>) {
-    let holds = &facts.work.holds.all;
+fn spread(recorded: &mut Recorded, work: &Work<'_>) {
+    let holds = &work.holds.all;
     let creeps: Vec<f64> = holds.iter().filter_map(|hold| hold.creep).collect();
     let creep = middle(&creeps);
     if creep.abs() > 0.03 {

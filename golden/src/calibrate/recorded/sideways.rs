@@ -5,11 +5,10 @@
 //! have it. These cannot be told by tangential forces and stay. What that `F_z` errs by, the constants err by.
 
 use super::folds::{Folds, levels};
-use super::friction::{self, Verdict};
 use super::readings::Readings;
 use super::report::{Recorded, TaxelGain};
 use super::table::Measured;
-use super::{RecordedError, holds};
+use super::{RecordedError, friction, holds};
 use crate::design::Design;
 use crate::solver::{Solver, Status};
 
@@ -89,10 +88,7 @@ pub(super) fn fit(
     let mut undetermined =
         vec!["F_z, curve and gains: no normal force is known; they stay as the design has them".to_owned()];
     let mut determined = Vec::new();
-    match verdict {
-        Verdict::Fitted(words) => determined.push(words),
-        Verdict::Not(words) => undetermined.push(words),
-    }
+    verdict.map_or_else(|words| undetermined.push(words), |words| determined.push(words));
     let steps = levels(holds.all.iter().map(|hold| hold.load));
     let gain = |taxel: usize| design.input.calibration.as_ref().map_or(1.0, |calibration| calibration.gain[taxel]);
     Ok(Recorded {
