@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use toml_edit::{DocumentMut, Item, TableLike};
 
-use crate::design::{CALIBRATION_FILE, CURVE_FILE, Design, DesignError, FileNames, JointConstants, WEIGHTS_FILE};
+use crate::design::{CALIBRATION_FILE, CURVE_FILE, Design, DesignError, JointConstants, WEIGHTS_FILE};
 
 /// Why a design is not written.
 #[derive(Debug, thiserror::Error)]
@@ -45,7 +45,8 @@ pub fn keep_apart(out: &Path, inputs: &[impl AsRef<Path>]) -> Result<(), Resolve
 /// Where a resolved design goes, and the files that it names.
 pub struct Resolved<'a> {
     design: &'a Path,
-    names: FileNames,
+    /// Whether the calibration and its curve are new too, and have the design's own name, as weights always have.
+    is_anew: bool,
     /// The file that it was made from, whose comments it keeps.
     source: Option<String>,
 }
@@ -68,8 +69,7 @@ impl<'a> Resolved<'a> {
     ///
     /// [`ResolvedError::Overwrites`] and [`ResolvedError::Calibration`].
     pub fn beside(design: &Design, inputs: &[PathBuf], out: &'a Path) -> Result<Self, ResolvedError> {
-        let FileNames { weights, .. } = FileNames::of(&stem(out));
-        let resolved = Self { design: out, names: FileNames { weights, ..FileNames::default() }, source: None };
+        let resolved = Self { design: out, is_anew: false, source: None };
         keep_apart(out, inputs)?;
         keep_apart(&resolved.path(WEIGHTS_FILE), inputs)?;
         if design.input.calibration.is_some() && resolved.path(CALIBRATION_FILE).exists() {
@@ -86,7 +86,7 @@ impl<'a> Resolved<'a> {
     pub fn anew(path: &Path, out: &'a Path) -> Result<Self, ResolvedError> {
         let inputs = Design::inputs_at(path)?;
         let source = fs::read_to_string(path).ok();
-        let resolved = Self { design: out, names: FileNames::of(&stem(out)), source };
+        let resolved = Self { design: out, is_anew: true, source };
         resolved.all().iter().try_for_each(|output| keep_apart(output, &inputs))?;
         Ok(resolved)
     }
@@ -100,10 +100,9 @@ impl<'a> Resolved<'a> {
     /// All that is to be written for a design, the design last, which begins with a remark. A calibration of the common
     /// name that is there already stays as somebody wrote it.
     pub fn contents(&self, design: &Design, remark: &str) -> Vec<(PathBuf, String)> {
-        let common = self.names.calibration == CALIBRATION_FILE;
         let files = design.files().into_iter().map(|(name, content)| (self.path(name), content));
-        let files = files.filter(|(path, _)| !common || *path != self.path(CALIBRATION_FILE) || !path.exists());
-        let keys = design.to_toml_with(&self.names);
+        let files = files.filter(|(path, _)| self.is_anew || *path != self.path(CALIBRATION_FILE) || !path.exists());
+        let keys = design.to_toml_with(|name| self.named(name));
         let commented = self.source.as_ref().and_then(|source| with_comments(source, &keys));
         let text = format!("# {remark}\n{}", commented.unwrap_or(keys));
         files.chain([(self.design.to_path_buf(), text)]).collect()
@@ -116,7 +115,13 @@ impl<'a> Resolved<'a> {
 
     /// The place of a file that the design names.
     fn path(&self, name: &str) -> PathBuf {
-        folder(self.design).join(self.names.of_file(name))
+        folder(self.design).join(self.named(name))
+    }
+
+    /// What the design calls it.
+    fn named(&self, name: &str) -> String {
+        let stem = self.design.file_stem().unwrap_or_default().display();
+        if self.is_anew || name == WEIGHTS_FILE { format!("{stem}.{name}") } else { name.to_owned() }
     }
 
     fn same_calibration(&self, design: &Design) -> Result<(), ResolvedError> {
@@ -170,10 +175,6 @@ fn update(table: &mut dyn TableLike, keys: &dyn TableLike) {
             }
         }
     }
-}
-
-fn stem(file: &Path) -> String {
-    file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// The folder of a file.

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use golden::design::{Design, FileNames};
+use golden::design::Design;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::luts::{ERROR, QUANTILES, REST, features};
 use nalgebra::{DMatrix, DVector};
@@ -99,9 +99,9 @@ pub fn missing(root: &Path) -> Result<Vec<Design>, String> {
 
 /// Files by which the command makes a design, with their names: the design's own last.
 pub fn files(design: &Design) -> Vec<(String, String)> {
-    let names = FileNames::of(&design.name);
-    let beside = design.files().into_iter().map(|(name, content)| (names.of_file(name).to_owned(), content));
-    beside.chain([(format!("{}.toml", design.name), design.to_toml_with(&names))]).collect()
+    let named = |name: &str| format!("{}.{name}", design.name);
+    let beside = design.files().into_iter().map(|(name, content)| (named(name), content));
+    beside.chain([(named("toml"), design.to_toml_with(named))]).collect()
 }
 
 /// Designs with their counts: those that [`COUNTS`] has, those with statistics in a folder, and of [`BLOCKS`].

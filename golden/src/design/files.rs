@@ -14,43 +14,6 @@ pub const CURVE_FILE: &str = "curve.csv";
 /// Name of the file of weights beside a resolved design.
 pub const WEIGHTS_FILE: &str = "weights.csv";
 
-/// What a resolved design calls the files beside it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FileNames {
-    /// Gains and offsets.
-    pub calibration: String,
-    /// The curve's points.
-    pub curve: String,
-    /// The estimator's weights.
-    pub weights: String,
-}
-
-impl Default for FileNames {
-    fn default() -> Self {
-        let [calibration, curve, weights] = [CALIBRATION_FILE, CURVE_FILE, WEIGHTS_FILE].map(str::to_owned);
-        Self { calibration, curve, weights }
-    }
-}
-
-impl FileNames {
-    /// Those of a design that shares its folder with others: each begins with the design's stem.
-    pub fn of(stem: &str) -> Self {
-        let [calibration, curve, weights] =
-            [CALIBRATION_FILE, CURVE_FILE, WEIGHTS_FILE].map(|name| format!("{stem}.{name}"));
-        Self { calibration, curve, weights }
-    }
-
-    /// What the file is called that [`Design::files`] has under a name.
-    pub fn of_file<'a>(&'a self, name: &'a str) -> &'a str {
-        match name {
-            CALIBRATION_FILE => &self.calibration,
-            CURVE_FILE => &self.curve,
-            WEIGHTS_FILE => &self.weights,
-            _ => name,
-        }
-    }
-}
-
 /// Where the files are that a design names.
 #[derive(Clone, Copy)]
 pub(crate) enum Beside<'a> {

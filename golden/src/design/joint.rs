@@ -135,7 +135,7 @@ pub(super) fn correction(
 }
 
 /// Writes the constants into `keys`, with the weights in the file named `weights`.
-pub(super) fn state(constants: &JointConstants, weights: &str, keys: &mut AlgorithmKeys) {
+pub(super) fn state(constants: &JointConstants, weights: String, keys: &mut AlgorithmKeys) {
     let JointConstants { training_set, gain, friction_correction, correction, calibrated_for } = constants;
     keys.training_set = Some(*training_set);
     keys.calibrated_for.clone_from(calibrated_for);
@@ -143,7 +143,7 @@ pub(super) fn state(constants: &JointConstants, weights: &str, keys: &mut Algori
     keys.friction_correction = Some(*friction_correction);
     keys.correction = correction.as_ref().map(|correction| CorrectionKeys {
         half_window: correction.half_window.map(|half| half as i64),
-        file: weights.to_owned(),
+        file: weights,
         sha256: sha256(&correction.to_csv()),
     });
 }

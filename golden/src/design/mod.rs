@@ -43,7 +43,7 @@ pub use curve::{Curve, MOST_SEGMENTS};
 pub use error::DesignError;
 pub use expected_error::{Expected, ExpectedError};
 pub(crate) use files::Beside;
-pub use files::{CALIBRATION_FILE, CURVE_FILE, FileNames, WEIGHTS_FILE};
+pub use files::{CALIBRATION_FILE, CURVE_FILE, WEIGHTS_FILE};
 pub use filter::{Choices, Filter, FilterKind, MatrixFilter, UnknownMatrixFilter};
 pub use hardware::{
     CalibrationIn, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise, Overrun, STREAM_BITS, Samples, Scaling,
@@ -197,17 +197,17 @@ impl Design {
     /// The resolved design as TOML: every key that has a value, in a fixed order; parsing it gives this design back. The
     /// files that it names are [`Design::files`]; write them beside it.
     pub fn to_toml(&self) -> String {
-        self.to_toml_with(&FileNames::default())
+        self.to_toml_with(str::to_owned)
     }
 
-    /// As [`Design::to_toml`], with other names for the files beside it.
-    pub fn to_toml_with(&self, names: &FileNames) -> String {
-        toml::to_string(&resolve::keys(self, names)).unwrap_or_default()
+    /// As [`Design::to_toml`], with other names for the files beside it, each from that in [`Design::files`].
+    pub fn to_toml_with(&self, named: impl Fn(&str) -> String) -> String {
+        toml::to_string(&resolve::keys(self, named)).unwrap_or_default()
     }
 
     /// As [`Design::to_toml`], as a file to edit: each key with its meaning, and those without a value as remarks.
     pub fn to_commented_toml(&self) -> String {
-        let mut keys = resolve::keys(self, &FileNames::default());
+        let mut keys = resolve::keys(self, str::to_owned);
         // Follows the full scale that is edited.
         let usual = self.hardware.full_scale_pa / NOISE_FLOOR_DIVISOR;
         keys.algorithm.noise_floor_pa =

@@ -1,11 +1,11 @@
 //! From the keys of a design file to a checked [`Design`], and back.
 
 use super::checks::{self, Check};
-use super::files::Beside;
+use super::files::{Beside, CALIBRATION_FILE, CURVE_FILE, WEIGHTS_FILE};
 use super::joint::Reads;
 use super::keys::{AlgorithmKeys, CurveKey, DeadKey, DesignKeys, FORMAT, NoiseKey, SensorKeys, SlipKeys};
 use super::{
-    Algorithm, DEFAULT_MAX_STANDARD_ERROR, Design, DesignError, Estimator, FileNames, Input, JointConstants, Kernel,
+    Algorithm, DEFAULT_MAX_STANDARD_ERROR, Design, DesignError, Estimator, Input, JointConstants, Kernel,
     NOISE_FLOOR_DIVISOR, Regularisation, Sensor, Slip, filter_keys, joint, rules,
 };
 
@@ -92,12 +92,12 @@ fn slip(check: &Check, keys: &SlipKeys) -> Result<Slip, DesignError> {
 }
 
 /// The keys of a design: every key that has a value, defaults too, so that the text means the same in every version.
-pub(super) fn keys(design: &Design, names: &FileNames) -> DesignKeys {
+pub(super) fn keys(design: &Design, named: impl Fn(&str) -> String) -> DesignKeys {
     let Design { name, sensor, input, algorithm, hardware } = design;
     let Sensor { columns, rows, pitch_mm, depth_mm } = *sensor;
     let curve = input.curve.as_ref().map(|curve| match curve.law {
         Some([power, scale]) => CurveKey::Law { power, scale },
-        None => CurveKey::File(names.curve.clone()),
+        None => CurveKey::File(named(CURVE_FILE)),
     });
     let taxels: Vec<i64> = input.dead.iter().map(|&taxel| taxel as i64).collect();
     let dead = match (input.room, taxels.is_empty()) {
@@ -127,7 +127,7 @@ pub(super) fn keys(design: &Design, names: &FileNames) -> DesignKeys {
         ..AlgorithmKeys::default()
     };
     if let Some(constants) = algorithm.constants() {
-        joint::state(constants, &names.weights, &mut keys);
+        joint::state(constants, named(WEIGHTS_FILE), &mut keys);
     }
     DesignKeys {
         format: FORMAT,
@@ -145,7 +145,7 @@ pub(super) fn keys(design: &Design, names: &FileNames) -> DesignKeys {
             smoothing: Some(input.smoothing).filter(|&k| k > 0),
             pa_per_count: input.pa_per_count,
             curve,
-            calibration: input.calibration.as_ref().map(|_| names.calibration.clone()),
+            calibration: input.calibration.as_ref().map(|_| named(CALIBRATION_FILE)),
             dead,
         },
         algorithm: keys,

@@ -2,7 +2,7 @@
 
 #![allow(clippy::float_cmp)] // the same bits are meant
 
-use golden::design::{Design, Estimator, FileNames, StandardError, WEIGHTS_FILE};
+use golden::design::{Design, Estimator, StandardError, WEIGHTS_FILE};
 use sha2::{Digest, Sha256};
 
 use super::{BARE, refused};
@@ -33,7 +33,7 @@ fn weights_stand_in_a_file_of_their_own() {
     assert_eq!(files, [(WEIGHTS_FILE, WEIGHTS.to_owned())]);
     assert!(resolved.contains("file = \"weights.csv\"\nsha256 = \""), "{resolved}");
     assert_eq!(Design::from_parts(&resolved, "resolved", &files).unwrap(), design);
-    let renamed = design.to_toml_with(&FileNames { weights: "a \"b\".csv".to_owned(), ..FileNames::default() });
+    let renamed = design.to_toml_with(|_| "a \"b\".csv".to_owned());
     assert_eq!(Design::from_parts(&renamed, "resolved", &[("a \"b\".csv", WEIGHTS.to_owned())]).unwrap(), design);
     // The line search has no weights to write.
     let mut line = design.clone();

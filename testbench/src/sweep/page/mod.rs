@@ -5,7 +5,7 @@ pub mod conclusion;
 pub mod front;
 mod kinds;
 
-use golden::design::{Design, Estimator, FileNames, Sensor};
+use golden::design::{Design, Estimator, Sensor};
 use golden::table::Table;
 use serde::Serialize;
 use tera::{Context, Tera};
@@ -195,9 +195,9 @@ fn recommended_design(recommended: Option<&Point>, foremost: &[&Design], sweep: 
 
 /// A design as files beside the page: their places and contents. The files that it names come before it.
 fn files_of(design: &Design) -> Vec<(String, String)> {
-    let names = FileNames::of(&design.name);
-    let whole = (format!("{}.toml", design.name), design.to_toml_with(&names));
-    let beside = design.files().into_iter().map(|(name, text)| (names.of_file(name).to_owned(), text));
+    let named = |name: &str| format!("{}.{name}", design.name);
+    let whole = (named("toml"), design.to_toml_with(named));
+    let beside = design.files().into_iter().map(|(name, text)| (named(name), text));
     beside.chain([whole]).map(|(name, text)| (format!("{RECOMMENDED}/{name}"), text)).collect()
 }
 
