@@ -125,11 +125,11 @@ mod tests {
                 let default =
                     option.get_default_values().iter().map(|value| value.to_string_lossy()).collect::<Vec<_>>();
                 let default = if takes && !default.is_empty() && !option.is_hide_default_value_set() {
-                    format!(" Default: `{}`.", default.join(" "))
+                    format!(" [default: {}]", default.join(" "))
                 } else {
                     String::new()
                 };
-                let _ = writeln!(page, "- `{shown}`: {help}.{words}{default}");
+                let _ = writeln!(page, "- `{shown}`: {help}{default}.{words}");
             }
         }
         page

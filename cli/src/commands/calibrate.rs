@@ -52,12 +52,12 @@ pub struct Args {
     /// Seed of the contacts and of the training.
     #[arg(long, default_value_t = 1, conflicts_with_all = RECORDED)]
     seed: u64,
-    /// Training set; default: the design's.
+    /// Training set [default: the design's]
     ///
     /// `sliding`: round contacts. `general`: contacts of any shape, tilted, held.
     #[arg(long, value_name = "SET", value_parser = word::<TrainingSet>(), conflicts_with_all = RECORDED)]
     training_set: Option<TrainingSet>,
-    /// Hidden units of the correction; default: 128, sliding 64, --quick 24.
+    /// Hidden units of the correction [default: 128, sliding 64, --quick 24]
     ///
     /// 0 is a design without a correction.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=256), conflicts_with_all = RECORDED)]

@@ -14,7 +14,7 @@ use super::recording::LayoutArguments;
 
 #[derive(clap::Args)]
 pub struct FrameArguments {
-    /// Frames (CSV or .npy), one a line; default: a contact made for the sensor.
+    /// Frames (CSV or .npy), one a line [default: a contact made for the sensor]
     ///
     /// Frames are in pascals or counts.
     #[arg(long)]

@@ -22,7 +22,7 @@ pub struct Args {
     /// Design file (TOML).
     #[arg(value_parser = design_file())]
     design: PathBuf,
-    /// Folder to write; default: rtl-out/NAME.
+    /// Folder to write [default: rtl-out/NAME]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// File of your own board, for block design and device tree.

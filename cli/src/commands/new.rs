@@ -56,10 +56,10 @@ pub struct Args {
     /// integers.
     #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(COUNT_BITS))]
     counts: Option<u32>,
-    /// Stress at the end of the sensor's range; default: 100000.
+    /// Stress at the end of the sensor's range [default: 100000]
     #[arg(long, value_name = "PA")]
     full_scale_pa: Option<f64>,
-    /// Standard deviation of a reading, as 1% of the frame's largest; default: 0.5%.
+    /// Standard deviation of a reading, as 1% of the frame's largest [default: 0.5%]
     ///
     /// A share may be written too, as 0.01. `sptfra calibrate` trains at up to 1.5 times this noise.
     /// `sptfra check --unloaded --loaded` measures it.

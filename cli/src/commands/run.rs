@@ -26,13 +26,13 @@ pub struct Args {
     /// True forces of the frames (CSV of `sptfra scene`), to report the errors.
     #[arg(long, value_name = "FORCES.csv", requires = "frames")]
     reference: Option<PathBuf>,
-    /// Write all signals of the free-running mode (FST or VCD); default: NAME.fst.
+    /// Write all signals of the free-running mode (FST or VCD) [default: NAME.fst]
     ///
     /// Beside it go views of the streams and blocks: .gtkw for `GTKWave`, .sucl for Surfer.
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     #[allow(clippy::option_option, reason = "absent, without a name, with one: how clap separates them")]
     trace: Option<Option<PathBuf>>,
-    /// Write how often each net changes (SAIF); default: NAME.saif.
+    /// Write how often each net changes (SAIF) [default: NAME.saif]
     ///
     /// For Vivado's estimate of power.
     #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with = "trace")]

@@ -33,7 +33,7 @@ pub struct Args {
     /// Design files (TOML) to vary.
     #[arg(required = true, value_parser = design_file())]
     designs: Vec<PathBuf>,
-    /// Scene files (TOML) with known forces; default: a contact made for each sensor.
+    /// Scene files (TOML) with known forces [default: contacts made for the sensor]
     #[arg(long = "scene", value_name = "SCENE.toml", num_args = 1..)]
     scenes: Vec<PathBuf>,
     /// Filters, comma-separated: none, f1, f2, f3, f1-40, f2-50.
