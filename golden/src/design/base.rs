@@ -12,6 +12,27 @@ const PATHS: [&[&str]; 4] = [
     &["algorithm", "filter", "scenes"],
 ];
 
+/// What errors of a design depend on: with another value, those of its base are not its own.
+const DECIDE_ERRORS: [(&str, &[&str]); 2] = [
+    ("sensor", &["columns", "rows", "pitch_mm", "depth_mm", "tension"]),
+    ("algorithm", &["kernel", "regularisation", "filter", "estimator", "gain", "friction_correction", "correction"]),
+];
+
+/// Removes errors that `base` states of itself, where `own` has another sensor or algorithm.
+pub(super) fn drop_errors(own: &Table, base: &mut Table) {
+    let has = |(table, keys): (&str, &[&str])| {
+        let table = own.get(table).and_then(Value::as_table);
+        table.is_some_and(|table| keys.iter().any(|key| table.contains_key(*key)))
+    };
+    if let Some(algorithm) = base.get_mut("algorithm").and_then(Value::as_table_mut)
+        && DECIDE_ERRORS.into_iter().any(has)
+    {
+        for key in ["standard_error", "expected_error"] {
+            algorithm.remove(key);
+        }
+    }
+}
+
 /// Adds to `own` what it lacks of `base`, tables key by key. A filter is one choice, and goes as a whole.
 pub(super) fn under(own: &mut Table, base: Table) {
     for (key, below) in base {

@@ -41,6 +41,7 @@ fn merge(check: &Check, own: &mut Table, beside: Beside<'_>) -> Result<Option<Ba
         let problem = format!("names {origin}, which has a base itself");
         return Err(check.value("base", problem, "name that one, and write here what is changed"));
     }
+    base::drop_errors(own, &mut keys);
     base::relocate(&mut keys, &name);
     own.remove("base");
     base::under(own, keys);

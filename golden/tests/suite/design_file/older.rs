@@ -80,3 +80,23 @@ fn a_base_gives_what_a_file_leaves_out() {
     let chain = wrong(base.replace("format = 3\n", "format = 3\nbase = \"x.toml\"\n"));
     assert!(chain.contains("has a base itself"), "{chain}");
 }
+
+/// Errors were found for one sensor and algorithm; what counts mean, dead taxels and hardware change nothing about them.
+#[test]
+fn errors_of_a_base_are_those_of_its_own_sensor_and_algorithm() {
+    let base = format!(
+        "{BARE}[algorithm]\nestimator = \"line\"\nstandard_error = {{ model = 0.1, noise = 90.0, border = 1.0 }}\n\
+         expected_error = {{ noise = [0.0], median = [5.0], p95 = [9.0] }}\n"
+    );
+    for (keys, same) in [
+        ("[hardware]\nlanes = 8\n", true),
+        ("[sensor]\npa_per_count = -2.0\ndead = [3]\n", true),
+        ("[algorithm]\noutputs = \"resultants\"\n", true),
+        ("[sensor]\npitch_mm = [3.0, 3.0]\n", false),
+        ("[algorithm]\nfilter = { kind = \"f2\", p = 30 }\nplan = \"paper\"\n", false),
+    ] {
+        let own = format!("format = 3\nbase = \"base.toml\"\nname = \"own\"\n{keys}");
+        let algorithm = Design::from_parts(&own, "pad.toml", &[("base.toml", base.clone())]).unwrap().algorithm;
+        assert_eq!((algorithm.standard_error.is_some(), algorithm.expected_error.is_some()), (same, same), "{keys}");
+    }
+}
