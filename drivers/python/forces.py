@@ -71,7 +71,8 @@ def main():
     for index, number in enumerate(forces.number):
         values = [*forces.resultant[index], forces.friction[index], forces.direction[index]]
         shown = (f"{value:.9g}" for value in values)
-        print(number, *shown, "; ".join(forces.names(index)), sep=",")
+        words = (name.lower().replace("_", " ") for name in forces.names(index))
+        print(number, *shown, "; ".join(words), sep=",")
     if wanted.plot:
         plot(forces, wanted.plot)
 

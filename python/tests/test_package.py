@@ -131,7 +131,7 @@ class Package(unittest.TestCase):
                 running.stdin.write((",".join(map(repr, map(float, frame.ravel()))) + "\n").encode())
                 running.stdin.flush()
                 said = running.stdout.readline().decode()
-                self.assertRegex(said, rf"^ +{number}  F = \(.*\) N  mu = 0\.\d+  phi = .* good$")
+                self.assertRegex(said, rf"^ +{number}  F = \(.*\) N  mu = 0\.\d+  phi = .* low confidence$")
             running.stdin.write(b"1,2\n")
             running.stdin.close()
             self.assertEqual(running.wait(), 1)

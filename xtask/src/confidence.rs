@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use golden::design::Design;
 use golden::scene::Kind;
+use golden::smoothing::noise_left;
 use golden::solver::{Solver, Status};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -41,12 +42,13 @@ pub fn rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
     let mut text = String::new();
     for (name, design) in designs {
         for percent in NOISE_PERCENT {
+            let left = percent * noise_left(design.input.smoothing);
             let mut told = design.clone();
-            told.input.noise = 0.01 * percent;
+            (told.input.noise, told.input.smoothing) = (0.01 * left, 0);
             let solver = Solver::new(&told)?;
             let mut inside = Vec::new();
             for kind in Kind::all().filter(|&kind| kind != Kind::Noisy) {
-                let found = frames(&told, &solver, kind, percent)?;
+                let found = frames(&told, &solver, kind, left)?;
                 row(&mut text, &format!("{name},{percent},{kind}"), &found, "");
                 if !matches!(kind, Kind::Border | Kind::Mixed) {
                     inside.extend(found);
@@ -59,7 +61,7 @@ pub fn rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
                 &mut text,
                 &format!("{name},{percent},inside"),
                 &inside,
-                &format!("{least:.2},{most:.2},{:.2}", by_pulling(&inside)),
+                &format!("{least:.2},{most:.2},{}", by_pulling(&inside)),
             );
         }
     }
@@ -92,15 +94,16 @@ fn ratio(frames: &[Frame]) -> f64 {
     square.sqrt() / (frames.iter().map(|frame| frame.standard_error).sum::<f64>() / count)
 }
 
-/// Correlation of the errors over their standard errors with the share of normal forces that pull.
-fn by_pulling(frames: &[Frame]) -> f64 {
+/// Correlation of the errors over their standard errors with the share of normal forces that pull; blank without a field.
+fn by_pulling(frames: &[Frame]) -> String {
     let count = frames.len() as f64;
     let pairs = || frames.iter().map(|frame| [frame.error / frame.standard_error, frame.pulling]);
     let mean: [f64; 2] = [0, 1].map(|of| pairs().map(|pair| pair[of]).sum::<f64>() / count);
     let product = |one: usize, other: usize| {
         pairs().map(|pair| (pair[one] - mean[one]) * (pair[other] - mean[other])).sum::<f64>()
     };
-    product(0, 1) / (product(0, 0) * product(1, 1)).sqrt()
+    let correlation = product(0, 1) / (product(0, 0) * product(1, 1)).sqrt();
+    if correlation.is_finite() { format!("{correlation:.2}") } else { String::new() }
 }
 
 fn row(text: &mut String, head: &str, frames: &[Frame], ratios: &str) {

@@ -35,7 +35,8 @@ fn worst(name: &str, scene: &str, gain: f64, every: usize) -> [f64; 4] {
     let mut worst = [0.0_f64; 4];
     for frame in frames(scene).iter().step_by(every) {
         let solution = solver.solve(&frame.stress).unwrap();
-        assert_eq!(solution.status, Status::default(), "{}", frame.label);
+        // Designs with a standard error rightly doubt the line search.
+        assert_eq!(solution.status.0 & !Status::LOW_CONFIDENCE.0, 0, "{}", frame.label);
         let mut found = Outcome::from(&solution);
         found.force = found.force.map(|force| gain * force);
         let [fx, fy, fz, _, phi] = errors(&Outcome::from(frame), &found);

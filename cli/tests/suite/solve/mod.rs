@@ -77,7 +77,8 @@ fn scene_then_solve() {
     assert!(output.stderr.is_empty(), "progress belongs on a terminal");
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(report["frames"], 36);
-    assert_eq!(report["status_counts"][0]["status"], 0);
+    // The design's standard error is above a tenth of F_z at any load, and says so.
+    assert_eq!(report["status_counts"][0]["status"], 64);
     let error = report["errors"]["e_fz"]["max"].as_f64().unwrap();
     assert!((error - 10.8).abs() < 0.05, "{error}");
 

@@ -8,7 +8,9 @@ use std::f64::consts::PI;
 use std::fmt::Write;
 
 use crate::designs::{ESTIMATORS, design, renew_table};
+use golden::calibrate::state_errors;
 use golden::scene::{Kind, SceneFrame, normal};
+use golden::smoothing::noise_left;
 use golden::solver::{Solver, Status};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -115,6 +117,25 @@ fn a_standard_error_is_right_at_the_noise_of_the_design() {
         assert!((55.0..78.0).contains(&one) && two > 94.0, "{name}: {one:.0} {two:.0}");
         let Judged { low_confidence, within: [_, two], .. } = judge(&solver, &noisy(Kind::Border));
         assert!(low_confidence > 99.0 && two > 70.0, "{name}: {low_confidence:.0} {two:.0}");
+    }
+}
+
+/// The same numbers serve averages and the first frame after a restart, whose noise is whole.
+#[test]
+fn a_standard_error_is_right_in_averages_and_after_a_restart() {
+    let mut design = design("sensor1-small");
+    (design.input.noise, design.input.smoothing) = (0.02, 4);
+    state_errors(&mut design, 1, &mut || ()).unwrap();
+    design.input.smoothing = 0;
+    let inside = Kind::all().filter(|kind| !matches!(kind, Kind::Noisy | Kind::Border | Kind::Mixed));
+    let frames: Vec<SceneFrame> =
+        inside.flat_map(|kind| kind.frames(&design.sensor, 0.5, 7000..7020).unwrap()).collect();
+    for noise in [0.02, 0.02 * noise_left(4)] {
+        let mut frames = frames.clone();
+        noisy(&mut frames, noise);
+        design.input.noise = noise;
+        let Judged { within: [one, two], .. } = judge(&Solver::new(&design).unwrap(), &frames);
+        assert!((55.0..75.0).contains(&one) && two > 93.0, "{noise}: {one:.0} {two:.0}");
     }
 }
 
