@@ -83,8 +83,10 @@ pub fn run(args: &Args) -> message::Result {
     let choice = tune_filter(&design, &frames, &|| progress.step())?;
     drop(progress);
 
+    let before = design.algorithm.clone();
     design.algorithm.filter =
         Filter::F3 { scenes: rebase_scenes(&scenes, from, folder(out)), choices: Some(Box::new(choice.choices())) };
+    design.algorithm.take_errors(&before);
     let remark = "Resolved by `sptfra tune-filter`: the filter of each matrix is chosen by the scenes named here.";
     let mut contents = resolved.contents(&design, remark);
     if let Some(csv) = csv {

@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use golden::design::{Design, Estimator, PlanKind};
+use golden::design::{Design, Estimator, Filter, PlanKind};
+use golden::estimators::StandardError;
 use serde_json::Value;
 use testbench::sweep::grid::{Axes, FilterAxis, jobs};
 use testbench::sweep::{SweepError, SweepScene};
@@ -91,6 +92,8 @@ fn the_joint_estimator_is_an_axis_with_the_constants_of_a_design_that_has_it() {
     let mut joint = line.clone();
     (joint.algorithm.plan, joint.algorithm.estimator) = (PlanKind::Reduced, Estimator::Joint);
     joint.algorithm.joint.gain = 1.125;
+    let errors = StandardError { model: 0.03, noise: 100.0, border: 1.0 };
+    joint.algorithm.standard_error = Some(errors);
     let axes = |estimators: &[Estimator]| Axes {
         filters: vec![FilterAxis::None, FilterAxis::F2(Some(50.0))],
         estimators: estimators.to_vec(),
@@ -109,6 +112,9 @@ fn the_joint_estimator_is_an_axis_with_the_constants_of_a_design_that_has_it() {
     for job in &swept {
         let (algorithm, is_joint) = (&job.design.algorithm, job.design.algorithm.estimator == Estimator::Joint);
         assert_eq!(algorithm.joint.gain.to_bits(), if is_joint { 1.125_f64 } else { 1.0 }.to_bits());
+        // Errors were found for these constants without a filter.
+        let holds = is_joint && algorithm.filter == Filter::None;
+        assert_eq!(algorithm.standard_error, holds.then_some(errors));
     }
     assert_eq!(by(&points(&both, &[]), Estimator::Joint), 0, "filters are judged with the line search");
     let alone = jobs(std::slice::from_ref(&line), &axes(&[Estimator::Joint]), &mut Vec::new(), 0);

@@ -92,6 +92,18 @@ impl Algorithm {
         self.estimator.is_calibrated().then_some(&*self.joint)
     }
 
+    /// Takes the errors of `other` if that finds forces alike; else none are known until `sptfra calibrate` finds them.
+    pub fn take_errors(&mut self, other: &Self) {
+        let finds = |of: &Self| (of.estimator, of.kernel, of.regularisation);
+        let is_alike =
+            finds(self) == finds(other) && (&self.filter, self.constants()) == (&other.filter, other.constants());
+        (self.standard_error, self.max_standard_error, self.expected_error) = if is_alike {
+            (other.standard_error, other.max_standard_error, other.expected_error.clone())
+        } else {
+            (None, DEFAULT_MAX_STANDARD_ERROR, None)
+        };
+    }
+
     /// What all forces are multiplied by.
     pub fn gain(&self) -> f64 {
         self.constants().map_or(1.0, |joint| joint.gain)

@@ -230,6 +230,7 @@ fn calibrated(base: &Design, estimator: Estimator, designs: &[Design]) -> Option
     let mut design = base.clone();
     design.algorithm.estimator = estimator;
     design.algorithm.joint.clone_from(&calibrated.algorithm.joint);
+    design.algorithm.take_errors(&calibrated.algorithm);
     Some(design)
 }
 
@@ -238,6 +239,7 @@ fn plain(base: &Design, estimator: Estimator) -> Design {
     let mut design = base.clone();
     design.algorithm.estimator = estimator;
     *design.algorithm.joint = JointConstants::default();
+    design.algorithm.take_errors(&base.algorithm);
     design
 }
 
@@ -275,6 +277,7 @@ fn with_filters(base: &Design, axis: &[FilterAxis]) -> Vec<Design> {
     let with = |filter| {
         let mut design = base.clone();
         design.algorithm.filter = filter;
+        design.algorithm.take_errors(&base.algorithm);
         design
     };
     filters.into_iter().map(with).collect()

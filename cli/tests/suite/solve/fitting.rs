@@ -20,7 +20,8 @@ fn choose_then_solve() {
         [sweep]\ndirection_deg = { from = 0, to = 315, step = 45 }\n";
     let sensor = "[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
     fs::write(folder.path().join("scene.toml"), format!("{sensor}{scene}")).unwrap();
-    let filter = "[algorithm]\nplan = \"paper\"\nfilter = { kind = \"f3\", scenes = [\"scene.toml\"] }\n";
+    let filter = "[algorithm]\nplan = \"paper\"\nfilter = { kind = \"f3\", scenes = [\"scene.toml\"] }\n\
+                  standard_error = { model = 0.1, noise = 90.0, border = 1.0 }\n";
     fs::write(&design, format!("{PLAIN}name = \"pad\"\n{sensor}{filter}")).unwrap();
 
     let (_frames_folder, frames) = folder_with(&row("-900"));
@@ -62,6 +63,7 @@ fn choose_then_solve() {
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(said.contains("8 frames") && said.contains("all together"), "{said}");
     let moved = fs::read_to_string(&again).unwrap();
+    assert!(!moved.contains("standard_error"), "that of other filters");
     assert!(moved.contains("\"../scene.toml\""), "{moved}");
     assert_eq!(moved.replace("../scene.toml", "scene.toml"), fs::read_to_string(&resolved).unwrap());
 
