@@ -236,7 +236,8 @@ tables: tools designs-at-noise ## Measure the tables of errors anew, into result
 	@$(XTASK_RELEASE) study noise $(AT_NOISE)/*-at-*.toml --out results/noise-calibrated.csv
 	@$(XTASK_RELEASE) study smoothing $(FAST) $(WIDE) --out results/smoothing.csv
 	@$(XTASK_RELEASE) study smoothing $(AT_NOISE)/*-smoothed-*.toml --out results/smoothing-calibrated.csv
-	@$(XTASK_RELEASE) study confidence $(FAST) $(WIDE) $(CLIPPED) --out results/confidence.csv
+	@$(XTASK_RELEASE) study confidence $(FAST) $(WIDE) $(CLIPPED) designs/sensor1-reduced.toml \
+	    $(AT_NOISE)/sensor1-fast-smoothed-0.01.toml $(AT_NOISE)/sensor2-fast-smoothed-0.01.toml --out results/confidence.csv
 	@$(XTASK_RELEASE) study drift designs/sensor1-fast.toml designs/sensor1-wide.toml --out results/drift.csv
 	@$(CARGO) test -p sptfra-golden --test suite -- --ignored table clipped::kinds recorded::figures
 	@$(CARGO) test -p sptfra-testbench --test suite -- --ignored count_contacts::table

@@ -12,7 +12,7 @@ impl Design {
     /// What to tell whose layer is too thin for its taxels; `None` if it is not.
     ///
     /// Below the limits, depths over the coarser pitch, forces are wrong by more than a few percent: of 200 unseen round
-    /// contacts at each depth (`docs/explanation/accuracy.md`, "Thin layers"). The grid search's gain makes up for the
+    /// contacts at each depth (`docs/explanation/accuracy.md`, "Depth over pitch"). The grid search's gain makes up for the
     /// normal force, its correction for part of the rest. That part is larger where forces are spread over their cells:
     /// through a thin layer a point force beside a taxel hardly reaches it.
     pub fn thin_layer(&self) -> Option<String> {
