@@ -42,11 +42,9 @@ module sptfra_ingress_fifo #(
     localparam [INDEX_WIDTH-1:0] END = END_WIDE[INDEX_WIDTH-1:0];
     localparam [ADDRESS_WIDTH-1:0] TOP = TOP_WIDE[ADDRESS_WIDTH-1:0];
 
-    generate
-        if ((WORDS != 1) && (WORDS != 2) && (WORDS != 4)) begin : gen_check_words
-            sptfra_error_words_must_be_1_2_or_4 invalid ();
-        end
-    endgenerate
+    if ((WORDS != 1) && (WORDS != 2) && (WORDS != 4)) begin : gen_check_words
+        sptfra_error_words_must_be_1_2_or_4 invalid ();
+    end
 
     // ---- In
     reg [1:0] frames; // that wait, or are coming in

@@ -41,11 +41,9 @@ module sptfra_unpack #(
     localparam [31:0] ALL = SAMPLES;
     localparam [31:0] REMAINDER = TAXELS - (BEATS - 1) * SAMPLES; // of a frame's last beat
 
-    generate
-        if ((SAMPLES < 2) || (SAMPLES > 8)) begin : gen_check_samples
-            sptfra_error_samples_of_a_beat_must_be_2_to_8 invalid ();
-        end
-    endgenerate
+    if ((SAMPLES < 2) || (SAMPLES > 8)) begin : gen_check_samples
+        sptfra_error_samples_of_a_beat_must_be_2_to_8 invalid ();
+    end
 
     reg [STREAM_BITS-1:0] held;
     reg held_last;

@@ -39,39 +39,37 @@ module sptfra_frame_memory #(
     wire [SAMPLES*WIDTH-1:0] beat_1;
     genvar index;
 
-    generate
-        for (index = 0; index < SAMPLES; index = index + 1) begin : gen_samples
-            sptfra_ram #(
-                .WIDTH         (WIDTH),
-                .DEPTH         (KEPT),
-                .ADDRESS_WIDTH (ADDRESS_WIDTH)
-            ) stresses (
-                .clock         (clock),
-                .write_enable  (write_enable && (write_wide < KEPT_WIDE)),
-                .write_address (write_wide[ADDRESS_WIDTH-1:0]),
-                .write_data    (write_stresses[WIDTH*index +: WIDTH]),
-                .read_enable   (read_enable),
-                .read_address  (taxel[SAMPLE_WIDTH +: ADDRESS_WIDTH]),
-                .read_data     (beat_1[WIDTH*index +: WIDTH])
-            );
-        end
-        if (SAMPLES == 1) begin : gen_single
-            always @(posedge clock) begin
-                if (read_enable) begin
-                    stress <= beat_1;
-                end
+    for (index = 0; index < SAMPLES; index = index + 1) begin : gen_samples
+        sptfra_ram #(
+            .WIDTH         (WIDTH),
+            .DEPTH         (KEPT),
+            .ADDRESS_WIDTH (ADDRESS_WIDTH)
+        ) stresses (
+            .clock         (clock),
+            .write_enable  (write_enable && (write_wide < KEPT_WIDE)),
+            .write_address (write_wide[ADDRESS_WIDTH-1:0]),
+            .write_data    (write_stresses[WIDTH*index +: WIDTH]),
+            .read_enable   (read_enable),
+            .read_address  (taxel[SAMPLE_WIDTH +: ADDRESS_WIDTH]),
+            .read_data     (beat_1[WIDTH*index +: WIDTH])
+        );
+    end
+    if (SAMPLES == 1) begin : gen_single
+        always @(posedge clock) begin
+            if (read_enable) begin
+                stress <= beat_1;
             end
-        end else begin : gen_sample
-            reg [SAMPLE_WIDTH-1:0] sample_1;
+        end
+    end else begin : gen_sample
+        reg [SAMPLE_WIDTH-1:0] sample_1;
 
-            always @(posedge clock) begin
-                if (read_enable) begin
-                    sample_1 <= taxel[SAMPLE_WIDTH-1:0];
-                    stress <= beat_1[WIDTH*sample_1 +: WIDTH];
-                end
+        always @(posedge clock) begin
+            if (read_enable) begin
+                sample_1 <= taxel[SAMPLE_WIDTH-1:0];
+                stress <= beat_1[WIDTH*sample_1 +: WIDTH];
             end
         end
-    endgenerate
+    end
 
     wire _unused = &{1'b0, write_wide, taxel};
 

@@ -21,11 +21,9 @@ module sptfra_leading_bit #(
     localparam integer OCTET_WIDTH = $clog2(OCTETS);
     localparam integer BITS_WIDTH = $clog2(WIDTH + 1);
 
-    generate
-        if ((WIDTH % 8 != 0) || (WIDTH < 16)) begin : gen_check
-            sptfra_error_width_must_be_a_multiple_of_8_from_16_on invalid ();
-        end
-    endgenerate
+    if ((WIDTH % 8 != 0) || (WIDTH < 16)) begin : gen_check
+        sptfra_error_width_must_be_a_multiple_of_8_from_16_on invalid ();
+    end
 
     reg [OCTET_WIDTH-1:0] octet;
     reg [7:0] top;

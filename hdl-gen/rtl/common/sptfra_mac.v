@@ -50,33 +50,31 @@ module sptfra_mac #(
         end
     end
 
-    generate
-        if (WIDE) begin : gen_two_blocks
-            localparam signed [44:0] HALF = 45'sd65536; // of what is dropped
-            wire signed [17:0] data_low = {1'b0, data_a[16:0]};
-            wire signed [17:0] data_high = data_a[34:17];
-            reg signed [44:0] low;
-            reg signed [44:0] high;
+    if (WIDE) begin : gen_two_blocks
+        localparam signed [44:0] HALF = 45'sd65536; // of what is dropped
+        wire signed [17:0] data_low = {1'b0, data_a[16:0]};
+        wire signed [17:0] data_high = data_a[34:17];
+        reg signed [44:0] low;
+        reg signed [44:0] high;
 
-            always @(posedge clock) begin
-                low <= coefficient_a * data_low + HALF;
-                high <= coefficient_a * data_high;
-            end
-
-            assign addend = $signed({{3{high[44]}}, high}) + $signed({{20{low[44]}}, low[44:17]});
-
-            wire _unused = &{1'b0, low[16:0]};
-        end else begin : gen_one_block
-            reg signed [44:0] product;
-
-            always @(posedge clock) begin
-                product <= coefficient_a * data_a;
-            end
-
-            // Extended in a wire of its own: it is what a DSP block takes
-            assign addend = {{3{product[44]}}, product};
+        always @(posedge clock) begin
+            low <= coefficient_a * data_low + HALF;
+            high <= coefficient_a * data_high;
         end
-    endgenerate
+
+        assign addend = $signed({{3{high[44]}}, high}) + $signed({{20{low[44]}}, low[44:17]});
+
+        wire _unused = &{1'b0, low[16:0]};
+    end else begin : gen_one_block
+        reg signed [44:0] product;
+
+        always @(posedge clock) begin
+            product <= coefficient_a * data_a;
+        end
+
+        // Extended in a wire of its own: it is what a DSP block takes
+        assign addend = {{3{product[44]}}, product};
+    end
 
 endmodule
 

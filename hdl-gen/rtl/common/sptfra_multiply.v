@@ -21,33 +21,31 @@ module sptfra_multiply #(
     output wire signed [DATA_BITS+17:0] product
 );
 
-    generate
-        if (WIDE) begin : gen_two_blocks
-            wire signed [17:0] data_low = {1'b0, data[16:0]};
-            wire signed [DATA_BITS-18:0] data_high = data[DATA_BITS-1:17];
-            reg signed [35:0] product_low;
-            reg signed [DATA_BITS:0] product_high;
+    if (WIDE) begin : gen_two_blocks
+        wire signed [17:0] data_low = {1'b0, data[16:0]};
+        wire signed [DATA_BITS-18:0] data_high = data[DATA_BITS-1:17];
+        reg signed [35:0] product_low;
+        reg signed [DATA_BITS:0] product_high;
 
-            always @(posedge clock) begin
-                if (enable) begin
-                    product_low <= coefficient * data_low;
-                    product_high <= coefficient * data_high;
-                end
+        always @(posedge clock) begin
+            if (enable) begin
+                product_low <= coefficient * data_low;
+                product_high <= coefficient * data_high;
             end
-
-            assign product = {{(DATA_BITS-18){product_low[35]}}, product_low} + {product_high, 17'd0};
-        end else begin : gen_one_block
-            reg signed [44:0] product_1;
-
-            always @(posedge clock) begin
-                if (enable) begin
-                    product_1 <= coefficient * data;
-                end
-            end
-
-            assign product = product_1;
         end
-    endgenerate
+
+        assign product = {{(DATA_BITS-18){product_low[35]}}, product_low} + {product_high, 17'd0};
+    end else begin : gen_one_block
+        reg signed [44:0] product_1;
+
+        always @(posedge clock) begin
+            if (enable) begin
+                product_1 <= coefficient * data;
+            end
+        end
+
+        assign product = product_1;
+    end
 
 endmodule
 

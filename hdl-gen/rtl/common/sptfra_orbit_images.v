@@ -30,11 +30,9 @@ module sptfra_orbit_images #(
     wire on_centre_y = (ROWS % 2 == 1) && (number >= LAST_ROW);
 
     genvar index;
-    generate
-        for (index = 0; index < ORBIT_ROWS; index = index + 1) begin : gen_rows
-            assign ends[index] = (number == ORBIT_COLUMNS * (index + 1) - 1);
-        end
-    endgenerate
+    for (index = 0; index < ORBIT_ROWS; index = index + 1) begin : gen_rows
+        assign ends[index] = (number == ORBIT_COLUMNS * (index + 1) - 1);
+    end
 
     assign counts = {!on_centre_x && !on_centre_y, !on_centre_y, !on_centre_x, 1'b1};
 

@@ -35,30 +35,26 @@ module sptfra_ram #(
 
     (* no_rw_check *) reg [WIDTH-1:0] memory [0:DEPTH-1];
 
-    generate
-        if (FILE != "" && ROM_DIR != "") begin : gen_contents
-            initial $readmemh({ROM_DIR, FILE}, memory);
-        end else if (FILE != "") begin : gen_contents_here
-            // An empty prefix would put a null character before the name
-            initial $readmemh(FILE, memory);
-        end else if (WRITABLE == 0) begin : gen_no_contents
-            // Neither a file nor a port writes it, and a memory needs a value
-            initial memory[0] = {WIDTH{1'b0}};
-        end
-    endgenerate
+    if (FILE != "" && ROM_DIR != "") begin : gen_contents
+        initial $readmemh({ROM_DIR, FILE}, memory);
+    end else if (FILE != "") begin : gen_contents_here
+        // An empty prefix would put a null character before the name
+        initial $readmemh(FILE, memory);
+    end else if (WRITABLE == 0) begin : gen_no_contents
+        // Neither a file nor a port writes it, and a memory needs a value
+        initial memory[0] = {WIDTH{1'b0}};
+    end
 
     // A tied-off port remains where a tool keeps the hierarchy: small ROMs would be block memories in place of LUTs
-    generate
-        if (WRITABLE != 0) begin : gen_write
-            always @(posedge clock) begin
-                if (write_enable) begin
-                    memory[write_address] <= write_data;
-                end
+    if (WRITABLE != 0) begin : gen_write
+        always @(posedge clock) begin
+            if (write_enable) begin
+                memory[write_address] <= write_data;
             end
-        end else begin : gen_no_write
-            wire _unused_write = &{1'b0, write_enable, write_address, write_data};
         end
-    endgenerate
+    end else begin : gen_no_write
+        wire _unused_write = &{1'b0, write_enable, write_address, write_data};
+    end
 
     always @(posedge clock) begin
         if (read_enable) begin

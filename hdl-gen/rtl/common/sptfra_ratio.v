@@ -31,11 +31,9 @@ module sptfra_ratio #(
     localparam integer WIDE = WIDTH + INTEGER_BITS;
     localparam integer COUNT_WIDTH = $clog2(BITS + 1);
 
-    generate
-        if ((INTEGER_BITS < 1) || (BITS <= INTEGER_BITS)) begin : gen_check
-            sptfra_error_a_quotient_needs_integer_and_fraction_bits invalid ();
-        end
-    endgenerate
+    if ((INTEGER_BITS < 1) || (BITS <= INTEGER_BITS)) begin : gen_check
+        sptfra_error_a_quotient_needs_integer_and_fraction_bits invalid ();
+    end
 
     reg [COUNT_WIDTH-1:0] left; // bits to come, and one
     reg [WIDE-1:0] divisor; // denominator * 2^(INTEGER_BITS - 1)

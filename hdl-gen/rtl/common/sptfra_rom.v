@@ -35,73 +35,71 @@ module sptfra_rom #(
     localparam BANKS = (DEPTH > 64 * BANK) ? 1 : (DEPTH + BANK - 1) / BANK;
 
     genvar bank;
-    generate
-        if (BANKS == 1) begin : gen_whole
+    if (BANKS == 1) begin : gen_whole
+        sptfra_ram #(
+            .WIDTH         (WIDTH),
+            .DEPTH         (DEPTH),
+            .ADDRESS_WIDTH (ADDRESS_WIDTH),
+            .ROM_DIR       (ROM_DIR),
+            .FILE          (FILE),
+            .WRITABLE      (0)
+        ) whole (
+            .clock         (clock),
+            .write_enable  (1'b0),
+            .write_address ({ADDRESS_WIDTH{1'b0}}),
+            .write_data    ({WIDTH{1'b0}}),
+            .read_enable   (enable),
+            .read_address  (address),
+            .read_data     (data)
+        );
+    end else begin : gen_banks
+        localparam [79:0] DIGITS = "9876543210"; // 0 in the lowest bits
+        wire [WIDTH*BANKS-1:0] words;
+        reg  [BANKS-1:0] chosen;
+        reg  [WIDTH-1:0] either;
+        integer index;
+
+        for (bank = 0; bank < BANKS; bank = bank + 1) begin : gen_bank
+            localparam WORDS = (bank == BANKS - 1) ? DEPTH - bank * BANK : BANK;
+            localparam WORDS_WIDTH = (WORDS > 2) ? $clog2(WORDS) : 1;
+            localparam [ADDRESS_WIDTH-BANK_WIDTH-1:0] NUMBER = bank;
+            localparam [15:0] TEXT = {DIGITS[8*(bank/10) +: 8], DIGITS[8*(bank%10) +: 8]};
+
             sptfra_ram #(
                 .WIDTH         (WIDTH),
-                .DEPTH         (DEPTH),
-                .ADDRESS_WIDTH (ADDRESS_WIDTH),
+                .DEPTH         (WORDS),
+                .ADDRESS_WIDTH (WORDS_WIDTH),
                 .ROM_DIR       (ROM_DIR),
-                .FILE          (FILE),
+                .FILE          ((FILE == "") ? "" : {"bank", TEXT, "_", FILE}),
                 .WRITABLE      (0)
-            ) whole (
+            ) of_bank (
                 .clock         (clock),
                 .write_enable  (1'b0),
-                .write_address ({ADDRESS_WIDTH{1'b0}}),
+                .write_address ({WORDS_WIDTH{1'b0}}),
                 .write_data    ({WIDTH{1'b0}}),
                 .read_enable   (enable),
-                .read_address  (address),
-                .read_data     (data)
+                .read_address  (address[WORDS_WIDTH-1:0]),
+                .read_data     (words[WIDTH*bank +: WIDTH])
             );
-        end else begin : gen_banks
-            localparam [79:0] DIGITS = "9876543210"; // 0 in the lowest bits
-            wire [WIDTH*BANKS-1:0] words;
-            reg  [BANKS-1:0] chosen;
-            reg  [WIDTH-1:0] either;
-            integer index;
 
-            for (bank = 0; bank < BANKS; bank = bank + 1) begin : gen_bank
-                localparam WORDS = (bank == BANKS - 1) ? DEPTH - bank * BANK : BANK;
-                localparam WORDS_WIDTH = (WORDS > 2) ? $clog2(WORDS) : 1;
-                localparam [ADDRESS_WIDTH-BANK_WIDTH-1:0] NUMBER = bank;
-                localparam [15:0] TEXT = {DIGITS[8*(bank/10) +: 8], DIGITS[8*(bank%10) +: 8]};
-
-                sptfra_ram #(
-                    .WIDTH         (WIDTH),
-                    .DEPTH         (WORDS),
-                    .ADDRESS_WIDTH (WORDS_WIDTH),
-                    .ROM_DIR       (ROM_DIR),
-                    .FILE          ((FILE == "") ? "" : {"bank", TEXT, "_", FILE}),
-                    .WRITABLE      (0)
-                ) of_bank (
-                    .clock         (clock),
-                    .write_enable  (1'b0),
-                    .write_address ({WORDS_WIDTH{1'b0}}),
-                    .write_data    ({WIDTH{1'b0}}),
-                    .read_enable   (enable),
-                    .read_address  (address[WORDS_WIDTH-1:0]),
-                    .read_data     (words[WIDTH*bank +: WIDTH])
-                );
-
-                always @(posedge clock) begin
-                    if (enable) begin
-                        chosen[bank] <= (address[ADDRESS_WIDTH-1:BANK_WIDTH] == NUMBER);
-                    end
+            always @(posedge clock) begin
+                if (enable) begin
+                    chosen[bank] <= (address[ADDRESS_WIDTH-1:BANK_WIDTH] == NUMBER);
                 end
             end
-
-            always @(*) begin
-                either = {WIDTH{1'b0}};
-                for (index = 0; index < BANKS; index = index + 1) begin
-                    if (chosen[index]) begin
-                        either = either | words[WIDTH*index +: WIDTH];
-                    end
-                end
-            end
-
-            assign data = either;
         end
-    endgenerate
+
+        always @(*) begin
+            either = {WIDTH{1'b0}};
+            for (index = 0; index < BANKS; index = index + 1) begin
+                if (chosen[index]) begin
+                    either = either | words[WIDTH*index +: WIDTH];
+                end
+            end
+        end
+
+        assign data = either;
+    end
 
 endmodule
 

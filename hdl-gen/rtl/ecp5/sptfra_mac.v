@@ -25,11 +25,9 @@ module sptfra_mac #(
     output wire signed [47:0] accumulator // the sum, three cycles after the operands; holds without valid ones
 );
 
-    generate
-        if (WIDE) begin : gen_check_wide
-            sptfra_error_ecp5_has_no_wide_mac invalid ();
-        end
-    endgenerate
+    if (WIDE) begin : gen_check_wide
+        sptfra_error_ecp5_has_no_wide_mac invalid ();
+    end
 
     reg valid_a;
     reg first_a;

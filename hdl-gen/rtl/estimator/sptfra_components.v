@@ -37,14 +37,12 @@ module sptfra_components #(
     output reg  [3:0] contacts
 );
 
-    generate
-        if ((COLUMNS < 2) || (COLUMNS > 64)) begin : gen_check_columns
-            sptfra_error_columns_must_be_2_to_64 invalid ();
-        end
-        if (SUM_BITS <= DATA_BITS) begin : gen_check_sum
-            sptfra_error_sums_must_be_wider_than_weights invalid ();
-        end
-    endgenerate
+    if ((COLUMNS < 2) || (COLUMNS > 64)) begin : gen_check_columns
+        sptfra_error_columns_must_be_2_to_64 invalid ();
+    end
+    if (SUM_BITS <= DATA_BITS) begin : gen_check_sum
+        sptfra_error_sums_must_be_wider_than_weights invalid ();
+    end
 
     // ---- Stage 1: the taxel's label. Seeds of the last row's steps, the newest in the lowest bits
     reg [COLUMNS:0] there;
@@ -61,13 +59,11 @@ module sptfra_components #(
     reg [LABEL_WIDTH-1:0] joined; // which had this label until now
     genvar index;
 
-    generate
-        for (index = 0; index <= COLUMNS; index = index + 1) begin : gen_labels
-            wire [LABEL_WIDTH-1:0] old = labels[LABEL_WIDTH*index +: LABEL_WIDTH];
+    for (index = 0; index <= COLUMNS; index = index + 1) begin : gen_labels
+        wire [LABEL_WIDTH-1:0] old = labels[LABEL_WIDTH*index +: LABEL_WIDTH];
 
-            assign renamed[LABEL_WIDTH*index +: LABEL_WIDTH] = (meets && (old == above)) ? own : old;
-        end
-    endgenerate
+        assign renamed[LABEL_WIDTH*index +: LABEL_WIDTH] = (meets && (old == above)) ? own : old;
+    end
 
     always @(posedge clock) begin
         if (step) begin

@@ -37,11 +37,9 @@ module sptfra_contact_counter #(
     input  wire contacts_take
 );
 
-    generate
-        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
-            sptfra_error_channels_must_be_1_or_4 invalid ();
-        end
-    endgenerate
+    if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
+        sptfra_error_channels_must_be_1_or_4 invalid ();
+    end
 
     localparam SUM_BITS = DATA_BITS + $clog2(COLUMNS * ROWS) + 1;
     localparam LABEL_WIDTH = (COLUMNS > 4) ? $clog2((COLUMNS + 1) / 2) + 1 : 2;

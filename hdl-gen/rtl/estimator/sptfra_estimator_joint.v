@@ -107,11 +107,9 @@ module sptfra_estimator_joint #(
     output reg  [5:0] flags
 );
 
-    generate
-        if (CHANNELS != 4) begin : gen_check
-            sptfra_error_the_joint_estimator_needs_four_channels invalid ();
-        end
-    endgenerate
+    if (CHANNELS != 4) begin : gen_check
+        sptfra_error_the_joint_estimator_needs_four_channels invalid ();
+    end
 
     // ---- u_q: a register on the way to their memory, and their bank with them
     reg [2:0] fill_valid;
@@ -237,93 +235,89 @@ module sptfra_estimator_joint #(
     );
 
     // ---- Standard error: during the search
-    generate
-        if (WITH_ERROR != 0) begin : gen_error
-            sptfra_standard_error #(
-                .MODEL    (ERROR_MODEL),
-                .NOISE    (ERROR_NOISE),
-                .BORDER   (ERROR_BORDER),
-                .LARGEST  (ERROR_LARGEST),
-                .AVERAGED (ERROR_AVERAGED)
-            ) standard_error (
-                .clock          (clock),
-                .reset          (reset),
-                .start          (search_start),
-                .stress_sum     (stress_sum),
-                .largest        (largest),
-                .frame_exponent (exponent),
-                .border         (border),
-                .variance       (variance),
-                .error_log      (found_error)
-            );
-        end else begin : gen_no_error
-            assign found_error = 18'sd0;
+    if (WITH_ERROR != 0) begin : gen_error
+        sptfra_standard_error #(
+            .MODEL    (ERROR_MODEL),
+            .NOISE    (ERROR_NOISE),
+            .BORDER   (ERROR_BORDER),
+            .LARGEST  (ERROR_LARGEST),
+            .AVERAGED (ERROR_AVERAGED)
+        ) standard_error (
+            .clock          (clock),
+            .reset          (reset),
+            .start          (search_start),
+            .stress_sum     (stress_sum),
+            .largest        (largest),
+            .frame_exponent (exponent),
+            .border         (border),
+            .variance       (variance),
+            .error_log      (found_error)
+        );
+    end else begin : gen_no_error
+        assign found_error = 18'sd0;
 
-            wire _unused_error = &{1'b0, border, variance, exponent, ERROR_MODEL, ERROR_NOISE, ERROR_BORDER,
-                ERROR_LARGEST, ERROR_AVERAGED != 0};
-        end
-    endgenerate
+        wire _unused_error = &{1'b0, border, variance, exponent, ERROR_MODEL, ERROR_NOISE, ERROR_BORDER,
+            ERROR_LARGEST, ERROR_AVERAGED != 0};
+    end
 
     // ---- Features and correction
     wire correction_done, clipped;
     wire signed [17:0] correction_x, correction_y;
 
-    generate
-        if (NETWORK != 0) begin : gen_correction
-            reg [WITH_FRAME-1:0] features_frame;
+    if (NETWORK != 0) begin : gen_correction
+        reg [WITH_FRAME-1:0] features_frame;
 
-            assign seen = features_frame;
-            always @(posedge clock) begin
-                if (features_start) begin
-                    features_frame <= searched;
-                end
+        assign seen = features_frame;
+        always @(posedge clock) begin
+            if (features_start) begin
+                features_frame <= searched;
             end
-
-            sptfra_correction #(
-                .COLUMNS                   (COLUMNS),
-                .ROWS                      (ROWS),
-                .HALF_X                    (HALF_X),
-                .HALF_Y                    (HALF_Y),
-                .LENGTH                    (LENGTH),
-                .PASSES                    (PASSES),
-                .AT_ONCE                   (AT_ONCE),
-                .STRESS_LEFT               (STRESS_LEFT),
-                .UNIT_SHIFT                (UNIT_SHIFT),
-                .CORRECTION_SHIFT          (CORRECTION_SHIFT),
-                .ROM_DIR                   (ROM_DIR),
-                .ROM_NAME                  (ROM_NAME),
-                .EXPECTED_FEATURES_LATENCY (EXPECTED_FEATURES_LATENCY),
-                .EXPECTED_NETWORK_LATENCY  (EXPECTED_NETWORK_LATENCY)
-            ) correction (
-                .clock          (clock),
-                .reset          (reset),
-                .read_valid     (read_valid),
-                .read_orbit     (read_orbit),
-                .read_values    (read_values),
-                .search_start   (search_start),
-                .stress_sum     (search_stress_sum),
-                .features_start (features_start),
-                .mu_x           (features_x),
-                .mu_y           (features_y),
-                .features_done  (centre_done),
-                .saturated      (features_saturated),
-                .start          (correction_start),
-                .window_done    (window_done),
-                .done           (correction_done),
-                .correction_x   (correction_x),
-                .correction_y   (correction_y)
-            );
-        end else begin : gen_none
-            assign seen = searched;
-            assign {centre_done, window_done, correction_done, features_saturated} = 4'd0;
-            assign {correction_x, correction_y} = 36'd0;
-
-            wire _unused = &{1'b0, features_start, features_x, features_y, read_valid, read_orbit, read_values,
-                HALF_X != 0, HALF_Y != 0, LENGTH != 0, PASSES != 0, STRESS_LEFT != 0, UNIT_SHIFT != 0,
-                CORRECTION_SHIFT != 0, EXPECTED_FEATURES_LATENCY != 0,
-                EXPECTED_NETWORK_LATENCY != 0, AT_ONCE != 0, ROM_DIR == "", ROM_NAME == ""};
         end
-    endgenerate
+
+        sptfra_correction #(
+            .COLUMNS                   (COLUMNS),
+            .ROWS                      (ROWS),
+            .HALF_X                    (HALF_X),
+            .HALF_Y                    (HALF_Y),
+            .LENGTH                    (LENGTH),
+            .PASSES                    (PASSES),
+            .AT_ONCE                   (AT_ONCE),
+            .STRESS_LEFT               (STRESS_LEFT),
+            .UNIT_SHIFT                (UNIT_SHIFT),
+            .CORRECTION_SHIFT          (CORRECTION_SHIFT),
+            .ROM_DIR                   (ROM_DIR),
+            .ROM_NAME                  (ROM_NAME),
+            .EXPECTED_FEATURES_LATENCY (EXPECTED_FEATURES_LATENCY),
+            .EXPECTED_NETWORK_LATENCY  (EXPECTED_NETWORK_LATENCY)
+        ) correction (
+            .clock          (clock),
+            .reset          (reset),
+            .read_valid     (read_valid),
+            .read_orbit     (read_orbit),
+            .read_values    (read_values),
+            .search_start   (search_start),
+            .stress_sum     (search_stress_sum),
+            .features_start (features_start),
+            .mu_x           (features_x),
+            .mu_y           (features_y),
+            .features_done  (centre_done),
+            .saturated      (features_saturated),
+            .start          (correction_start),
+            .window_done    (window_done),
+            .done           (correction_done),
+            .correction_x   (correction_x),
+            .correction_y   (correction_y)
+        );
+    end else begin : gen_none
+        assign seen = searched;
+        assign {centre_done, window_done, correction_done, features_saturated} = 4'd0;
+        assign {correction_x, correction_y} = 36'd0;
+
+        wire _unused = &{1'b0, features_start, features_x, features_y, read_valid, read_orbit, read_values,
+            HALF_X != 0, HALF_Y != 0, LENGTH != 0, PASSES != 0, STRESS_LEFT != 0, UNIT_SHIFT != 0,
+            CORRECTION_SHIFT != 0, EXPECTED_FEATURES_LATENCY != 0,
+            EXPECTED_NETWORK_LATENCY != 0, AT_ONCE != 0, ROM_DIR == "", ROM_NAME == ""};
+    end
 
     // ---- Friction
     sptfra_friction #(

@@ -81,11 +81,9 @@ module sptfra_estimator_line #(
     output reg  [5:0] flags
 );
 
-    generate
-        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check
-            sptfra_error_channels_must_be_1_or_4 invalid ();
-        end
-    endgenerate
+    if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check
+        sptfra_error_channels_must_be_1_or_4 invalid ();
+    end
 
     // ---- u_q: a register on the way to all cells
     reg [2:0] fill_valid;
@@ -234,36 +232,34 @@ module sptfra_estimator_line #(
     );
 
     // ---- Standard error: during the search
-    generate
-        if (WITH_ERROR != 0) begin : gen_error
-            wire signed [17:0] found_error;
+    if (WITH_ERROR != 0) begin : gen_error
+        wire signed [17:0] found_error;
 
-            sptfra_standard_error #(
-                .MODEL    (ERROR_MODEL),
-                .NOISE    (ERROR_NOISE),
-                .BORDER   (ERROR_BORDER),
-                .LARGEST  (ERROR_LARGEST),
-                .AVERAGED (ERROR_AVERAGED)
-            ) standard_error (
-                .clock          (clock),
-                .reset          (reset),
-                .start          (search_start),
-                .stress_sum     (line_stress_sum),
-                .largest        (line_largest),
-                .frame_exponent (line_exponent),
-                .border         (line_border),
-                .variance       (line_variance),
-                .error_log      (found_error)
-            );
+        sptfra_standard_error #(
+            .MODEL    (ERROR_MODEL),
+            .NOISE    (ERROR_NOISE),
+            .BORDER   (ERROR_BORDER),
+            .LARGEST  (ERROR_LARGEST),
+            .AVERAGED (ERROR_AVERAGED)
+        ) standard_error (
+            .clock          (clock),
+            .reset          (reset),
+            .start          (search_start),
+            .stress_sum     (line_stress_sum),
+            .largest        (line_largest),
+            .frame_exponent (line_exponent),
+            .border         (line_border),
+            .variance       (line_variance),
+            .error_log      (found_error)
+        );
 
-            assign error_log = unknown ? 18'sd0 : found_error; // without a direction as much as presses
-        end else begin : gen_no_error
-            assign error_log = 18'sd0;
+        assign error_log = unknown ? 18'sd0 : found_error; // without a direction as much as presses
+    end else begin : gen_no_error
+        assign error_log = 18'sd0;
 
-            wire _unused = &{1'b0, line_largest, line_border, line_variance, line_exponent, ERROR_MODEL, ERROR_NOISE,
-                ERROR_BORDER, ERROR_LARGEST, ERROR_AVERAGED != 0};
-        end
-    endgenerate
+        wire _unused = &{1'b0, line_largest, line_border, line_variance, line_exponent, ERROR_MODEL, ERROR_NOISE,
+            ERROR_BORDER, ERROR_LARGEST, ERROR_AVERAGED != 0};
+    end
 
 endmodule
 

@@ -131,24 +131,22 @@ module sptfra_features #(
     wire [3*4*27-1:0] u_values;
     genvar index;
 
-    generate
-        // A search that begins after features is behind them all the way: two cycles an orbit at least
-        for (index = 0; index < 3; index = index + 1) begin : gen_memories
-            sptfra_ram #(
-                .WIDTH         (4 * 27),
-                .DEPTH         ((ORBITS > 8) ? ORBITS : 8),
-                .ADDRESS_WIDTH (ROW_WIDTH)
-            ) of_q (
-                .clock         (clock),
-                .write_enable  (read_valid),
-                .write_address (read_orbit),
-                .write_data    (read_values[4*27*index +: 4*27]),
-                .read_enable   (1'b1),
-                .read_address  (u_orbit),
-                .read_data     (u_values[4*27*index +: 4*27])
-            );
-        end
-    endgenerate
+    // A search that begins after features is behind them all the way: two cycles an orbit at least
+    for (index = 0; index < 3; index = index + 1) begin : gen_memories
+        sptfra_ram #(
+            .WIDTH         (4 * 27),
+            .DEPTH         ((ORBITS > 8) ? ORBITS : 8),
+            .ADDRESS_WIDTH (ROW_WIDTH)
+        ) of_q (
+            .clock         (clock),
+            .write_enable  (read_valid),
+            .write_address (read_orbit),
+            .write_data    (read_values[4*27*index +: 4*27]),
+            .read_enable   (1'b1),
+            .read_address  (u_orbit),
+            .read_data     (u_values[4*27*index +: 4*27])
+        );
+    end
 
     // ---- Stress
     wire share_valid;

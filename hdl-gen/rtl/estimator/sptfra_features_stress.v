@@ -100,47 +100,45 @@ module sptfra_features_stress #(
 
     genvar index;
 
-    generate
-        for (index = 0; index < 4; index = index + 1) begin : gen_images
-            wire signed [26:0] u0 = u_values[27*index +: 27];
-            wire signed [26:0] u1 = u_values[27*(4 + index) +: 27];
-            wire signed [26:0] u2 = u_values[27*(8 + index) +: 27];
-            reg signed [26:0] u0_2; // from two cycles after the second one of its orbit on
-            reg signed [26:0] u0_4;
-            wire signed [47:0] friction;
-            wire signed [47:0] rounded = friction + { {5{u0_4[26]}}, u0_4, 16'd0} + NORMAL_HALF;
-            reg signed [26:0] normal;
-            reg signed [26:0] compression;
+    for (index = 0; index < 4; index = index + 1) begin : gen_images
+        wire signed [26:0] u0 = u_values[27*index +: 27];
+        wire signed [26:0] u1 = u_values[27*(4 + index) +: 27];
+        wire signed [26:0] u2 = u_values[27*(8 + index) +: 27];
+        reg signed [26:0] u0_2; // from two cycles after the second one of its orbit on
+        reg signed [26:0] u0_4;
+        wire signed [47:0] friction;
+        wire signed [47:0] rounded = friction + { {5{u0_4[26]}}, u0_4, 16'd0} + NORMAL_HALF;
+        reg signed [26:0] normal;
+        reg signed [26:0] compression;
 
-            sptfra_mac with_friction (
-                .clock       (clock),
-                .reset       (reset),
-                .valid       (first_1 || seconds[1]),
-                .first       (first_1),
-                .coefficient (first_1 ? mu_x : mu_y),
-                .data        (first_1 ? u1 : u2),
-                .accumulator (friction)
-            );
+        sptfra_mac with_friction (
+            .clock       (clock),
+            .reset       (reset),
+            .valid       (first_1 || seconds[1]),
+            .first       (first_1),
+            .coefficient (first_1 ? mu_x : mu_y),
+            .data        (first_1 ? u1 : u2),
+            .accumulator (friction)
+        );
 
-            always @(posedge clock) begin
-                if (seconds[1]) begin
-                    u0_2 <= u0;
-                end
-                if (seconds[3]) begin
-                    u0_4 <= u0_2;
-                end
-                if (seconds[4]) begin
-                    normal <= rounded[NORMAL_SHIFT +: 27];
-                end
-                compression <= normal[26] ? -normal : 27'd0;
+        always @(posedge clock) begin
+            if (seconds[1]) begin
+                u0_2 <= u0;
             end
-
-            assign normals[27*index +: 27] = normal;
-            assign compressions[27*index +: 27] = compression;
-
-            wire _unused = &{1'b0, rounded};
+            if (seconds[3]) begin
+                u0_4 <= u0_2;
+            end
+            if (seconds[4]) begin
+                normal <= rounded[NORMAL_SHIFT +: 27];
+            end
+            compression <= normal[26] ? -normal : 27'd0;
         end
-    endgenerate
+
+        assign normals[27*index +: 27] = normal;
+        assign compressions[27*index +: 27] = compression;
+
+        wire _unused = &{1'b0, rounded};
+    end
 
     // ---- Moments of the compression, index k: k cycles after an orbit's second one. One half, then the other
     reg [26:0] at_left; // two compressions: of three stresses added up, a quarter as fine
@@ -214,45 +212,43 @@ module sptfra_features_stress #(
     reg [2*STRESS_BITS-1:0] first_pair;
     reg [ROW_WIDTH-1:0] orbit_11;
 
-    generate
-        for (index = 0; index < 2; index = index + 1) begin : gen_shares
-            wire signed [44:0] product;
-            wire signed [SHARE_BITS-1:0] wide = { {(STRESS_LEFT + 1){product[44]}}, product[43:0]};
-            reg signed [SHARE_BITS-1:0] scaled;
-            reg signed [SHARE_BITS-1:0] octets;
-            wire signed [SHARE_BITS-1:0] bits = octets >>> sum_bits[2:0];
-            reg [STRESS_BITS-1:0] exact;
-            reg sign;
-            reg is_whole; // exact has all of it
-            reg [STRESS_BITS-1:0] share;
+    for (index = 0; index < 2; index = index + 1) begin : gen_shares
+        wire signed [44:0] product;
+        wire signed [SHARE_BITS-1:0] wide = { {(STRESS_LEFT + 1){product[44]}}, product[43:0]};
+        reg signed [SHARE_BITS-1:0] scaled;
+        reg signed [SHARE_BITS-1:0] octets;
+        wire signed [SHARE_BITS-1:0] bits = octets >>> sum_bits[2:0];
+        reg [STRESS_BITS-1:0] exact;
+        reg sign;
+        reg is_whole; // exact has all of it
+        reg [STRESS_BITS-1:0] share;
 
-            // Not the most negative number either: the sum of four would leave its width
-            assign fits[index] = is_whole && (exact != {1'b1, {(STRESS_BITS - 1){1'b0}}});
+        // Not the most negative number either: the sum of four would leave its width
+        assign fits[index] = is_whole && (exact != {1'b1, {(STRESS_BITS - 1){1'b0}}});
 
-            sptfra_multiply multiplier (
-                .clock       (clock),
-                .enable      (1'b1),
-                .coefficient (reciprocal),
-                .data        (seconds[5] ? normals[27*index +: 27] : normals[27*(2 + index) +: 27]),
-                .product     (product)
-            );
+        sptfra_multiply multiplier (
+            .clock       (clock),
+            .enable      (1'b1),
+            .coefficient (reciprocal),
+            .data        (seconds[5] ? normals[27*index +: 27] : normals[27*(2 + index) +: 27]),
+            .product     (product)
+        );
 
-            always @(posedge clock) begin
-                scaled <= wide <<< STRESS_LEFT;
-                octets <= scaled >>> {sum_bits[5:3], 3'd0};
-                exact <= bits[STRESS_BITS-1:0];
-                sign <= octets[SHARE_BITS-1];
-                // Of the bits above, those that a shift of up to 7 brings down, and the others
-                is_whole <= (bits[STRESS_BITS+6:STRESS_BITS-1] == {8{octets[SHARE_BITS-1]}})
-                    && (octets[SHARE_BITS-1:STRESS_BITS+7] == {(SHARE_BITS - STRESS_BITS - 7){octets[SHARE_BITS-1]}});
-                share <= fits[index] ? exact : {sign, {(STRESS_BITS - 2){!sign}}, 1'b1};
-            end
-
-            wire _unused = &{1'b0, bits};
-
-            assign pair[STRESS_BITS*index +: STRESS_BITS] = share;
+        always @(posedge clock) begin
+            scaled <= wide <<< STRESS_LEFT;
+            octets <= scaled >>> {sum_bits[5:3], 3'd0};
+            exact <= bits[STRESS_BITS-1:0];
+            sign <= octets[SHARE_BITS-1];
+            // Of the bits above, those that a shift of up to 7 brings down, and the others
+            is_whole <= (bits[STRESS_BITS+6:STRESS_BITS-1] == {8{octets[SHARE_BITS-1]}})
+                && (octets[SHARE_BITS-1:STRESS_BITS+7] == {(SHARE_BITS - STRESS_BITS - 7){octets[SHARE_BITS-1]}});
+            share <= fits[index] ? exact : {sign, {(STRESS_BITS - 2){!sign}}, 1'b1};
         end
-    endgenerate
+
+        wire _unused = &{1'b0, bits};
+
+        assign pair[STRESS_BITS*index +: STRESS_BITS] = share;
+    end
 
     assign share_valid = seconds[11];
     assign share_orbit = orbit_11;

@@ -66,11 +66,9 @@ module sptfra_features_window #(
 
     localparam [2:0] IDLE = 3'd0, CENTRE = 3'd1, WINDOW = 3'd2, FLUSH = 3'd3, REMAINING = 3'd4;
 
-    generate
-        if (LENGTH < PLACES + 2) begin : gen_check
-            sptfra_error_the_words_do_not_hold_the_window invalid ();
-        end
-    endgenerate
+    if (LENGTH < PLACES + 2) begin : gen_check
+        sptfra_error_the_words_do_not_hold_the_window invalid ();
+    end
 
     reg [2:0] state;
     reg [2:0] wait_count;
@@ -125,44 +123,42 @@ module sptfra_features_window #(
 
     genvar side;
 
-    generate
-        for (side = 0; side < 2; side = side + 1) begin : gen_sides
-            reg signed [9:0] at_x;
-            reg signed [9:0] at_y;
-            reg counts_x;
-            reg counts_y;
-            wire in_far_x = (at_x[8:0] >= ORBIT_COLUMNS[8:0]);
-            wire in_far_y = (at_y[8:0] >= ORBIT_ROWS[8:0]);
-            reg [9:0] column;
-            reg [9:0] row;
-            reg far_x;
-            reg far_y;
-            reg inside_x;
-            reg inside_y;
+    for (side = 0; side < 2; side = side + 1) begin : gen_sides
+        reg signed [9:0] at_x;
+        reg signed [9:0] at_y;
+        reg counts_x;
+        reg counts_y;
+        wire in_far_x = (at_x[8:0] >= ORBIT_COLUMNS[8:0]);
+        wire in_far_y = (at_y[8:0] >= ORBIT_ROWS[8:0]);
+        reg [9:0] column;
+        reg [9:0] row;
+        reg far_x;
+        reg far_y;
+        reg inside_x;
+        reg inside_y;
 
-            always @(posedge clock) begin
-                at_x <= (side == 0) ? centre_x + distance_x : centre_x - distance_x;
-                at_y <= (side == 0) ? centre_y + distance_y : centre_y - distance_y;
-                counts_x <= (side == 0) || (place_x != {PX_WIDTH{1'b0}});
-                counts_y <= (side == 0) || (place_y != {PY_WIDTH{1'b0}});
-                column <= in_far_x ? LAST_COLUMN[9:0] - at_x : at_x;
-                row <= in_far_y ? LAST_ROW[9:0] - at_y : at_y;
-                far_x <= in_far_x;
-                far_y <= in_far_y;
-                inside_x <= counts_x && !at_x[9] && (at_x[8:0] < GRID_COLUMNS);
-                inside_y <= counts_y && !at_y[9] && (at_y[8:0] < GRID_ROWS);
-            end
-
-            assign column_2[side] = column[ROW_WIDTH-1:0];
-            assign row_2[side] = row[ROW_WIDTH-1:0];
-            assign far_x_2[side] = far_x;
-            assign far_y_2[side] = far_y;
-            assign inside_x_2[side] = inside_x;
-            assign inside_y_2[side] = inside_y;
-
-            wire _unused = &{1'b0, column, row};
+        always @(posedge clock) begin
+            at_x <= (side == 0) ? centre_x + distance_x : centre_x - distance_x;
+            at_y <= (side == 0) ? centre_y + distance_y : centre_y - distance_y;
+            counts_x <= (side == 0) || (place_x != {PX_WIDTH{1'b0}});
+            counts_y <= (side == 0) || (place_y != {PY_WIDTH{1'b0}});
+            column <= in_far_x ? LAST_COLUMN[9:0] - at_x : at_x;
+            row <= in_far_y ? LAST_ROW[9:0] - at_y : at_y;
+            far_x <= in_far_x;
+            far_y <= in_far_y;
+            inside_x <= counts_x && !at_x[9] && (at_x[8:0] < GRID_COLUMNS);
+            inside_y <= counts_y && !at_y[9] && (at_y[8:0] < GRID_ROWS);
         end
-    endgenerate
+
+        assign column_2[side] = column[ROW_WIDTH-1:0];
+        assign row_2[side] = row[ROW_WIDTH-1:0];
+        assign far_x_2[side] = far_x;
+        assign far_y_2[side] = far_y;
+        assign inside_x_2[side] = inside_x;
+        assign inside_y_2[side] = inside_y;
+
+        wire _unused = &{1'b0, column, row};
+    end
 
     // The number of an orbit: a constant's bits say which shifts of the row are added
     function [ROW_WIDTH-1:0] orbit_of(input [ROW_WIDTH-1:0] row, input [ROW_WIDTH-1:0] column);
@@ -184,44 +180,42 @@ module sptfra_features_window #(
     genvar image;
     genvar quarter;
 
-    generate
-        for (image = 0; image < 4; image = image + 1) begin : gen_images
-            reg [ROW_WIDTH-1:0] orbit_3;
-            reg [1:0] quarter_3;
-            reg [1:0] quarter_4;
-            reg inside_3;
-            reg inside_4;
-            wire [STRESS_BITS-1:0] seen_4 [0:3];
-            reg [STRESS_BITS-1:0] value_5;
+    for (image = 0; image < 4; image = image + 1) begin : gen_images
+        reg [ROW_WIDTH-1:0] orbit_3;
+        reg [1:0] quarter_3;
+        reg [1:0] quarter_4;
+        reg inside_3;
+        reg inside_4;
+        wire [STRESS_BITS-1:0] seen_4 [0:3];
+        reg [STRESS_BITS-1:0] value_5;
 
-            for (quarter = 0; quarter < 4; quarter = quarter + 1) begin : gen_quarters
-                sptfra_ram #(
-                    .WIDTH         (STRESS_BITS),
-                    .DEPTH         (SEEN_DEPTH),
-                    .ADDRESS_WIDTH (ROW_WIDTH)
-                ) seen (
-                    .clock         (clock),
-                    .write_enable  (share_valid),
-                    .write_address (share_orbit),
-                    .write_data    (shares[STRESS_BITS*quarter +: STRESS_BITS]),
-                    .read_enable   (1'b1),
-                    .read_address  (orbit_3),
-                    .read_data     (seen_4[quarter])
-                );
-            end
-
-            always @(posedge clock) begin
-                orbit_3 <= orbit_of(row_2[image / 2], column_2[image % 2]);
-                quarter_3 <= {far_y_2[image / 2], far_x_2[image % 2]};
-                quarter_4 <= quarter_3;
-                inside_3 <= inside_x_2[image % 2] && inside_y_2[image / 2];
-                inside_4 <= inside_3;
-                value_5 <= inside_4 ? seen_4[quarter_4] : {STRESS_BITS{1'b0}};
-            end
-
-            assign images_5[STRESS_BITS*image +: STRESS_BITS] = value_5;
+        for (quarter = 0; quarter < 4; quarter = quarter + 1) begin : gen_quarters
+            sptfra_ram #(
+                .WIDTH         (STRESS_BITS),
+                .DEPTH         (SEEN_DEPTH),
+                .ADDRESS_WIDTH (ROW_WIDTH)
+            ) seen (
+                .clock         (clock),
+                .write_enable  (share_valid),
+                .write_address (share_orbit),
+                .write_data    (shares[STRESS_BITS*quarter +: STRESS_BITS]),
+                .read_enable   (1'b1),
+                .read_address  (orbit_3),
+                .read_data     (seen_4[quarter])
+            );
         end
-    endgenerate
+
+        always @(posedge clock) begin
+            orbit_3 <= orbit_of(row_2[image / 2], column_2[image % 2]);
+            quarter_3 <= {far_y_2[image / 2], far_x_2[image % 2]};
+            quarter_4 <= quarter_3;
+            inside_3 <= inside_x_2[image % 2] && inside_y_2[image / 2];
+            inside_4 <= inside_3;
+            value_5 <= inside_4 ? seen_4[quarter_4] : {STRESS_BITS{1'b0}};
+        end
+
+        assign images_5[STRESS_BITS*image +: STRESS_BITS] = value_5;
+    end
 
     sptfra_butterfly #(
         .WIDTH (STRESS_BITS)

@@ -28,11 +28,9 @@ module sptfra_grid_centroid #(
     output reg  signed [17:0] mu_y
 );
 
-    generate
-        if ((AT_ONCE != 5) && ((AT_ONCE != SIDE) || (AT_ONCE < 11) || (AT_ONCE > 15))) begin : gen_check
-            sptfra_error_five_points_come_in_a_cycle_or_a_row_of_11_to_15 invalid ();
-        end
-    endgenerate
+    if ((AT_ONCE != 5) && ((AT_ONCE != SIDE) || (AT_ONCE < 11) || (AT_ONCE > 15))) begin : gen_check
+        sptfra_error_five_points_come_in_a_cycle_or_a_row_of_11_to_15 invalid ();
+    end
 
     localparam integer REACH = SIDE / 2;
     localparam integer FIVES = (AT_ONCE + 4) / 5;
@@ -65,59 +63,57 @@ module sptfra_grid_centroid #(
 
     wire [5*FIVES*WEIGHT_BITS-1:0] padded; // the last five are filled up with weights of 0
 
-    generate
-        if (5 * FIVES > AT_ONCE) begin : gen_padded
-            assign padded = { {((5 * FIVES - AT_ONCE) * WEIGHT_BITS){1'b0}}, weights};
-        end else begin : gen_full
-            assign padded = weights;
+    if (5 * FIVES > AT_ONCE) begin : gen_padded
+        assign padded = { {((5 * FIVES - AT_ONCE) * WEIGHT_BITS){1'b0}}, weights};
+    end else begin : gen_full
+        assign padded = weights;
+    end
+    for (index = 0; index < FIVES; index = index + 1) begin : gen_fives
+        wire [5*WEIGHT_BITS-1:0] five = padded[5*WEIGHT_BITS*index +: 5*WEIGHT_BITS];
+        wire [GROUP_BITS-1:0] w0 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*0 +: WEIGHT_BITS]};
+        wire [GROUP_BITS-1:0] w1 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*1 +: WEIGHT_BITS]};
+        wire [GROUP_BITS-1:0] w2 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*2 +: WEIGHT_BITS]};
+        wire [GROUP_BITS-1:0] w3 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*3 +: WEIGHT_BITS]};
+        wire [GROUP_BITS-1:0] w4 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*4 +: WEIGHT_BITS]};
+        reg [GROUP_BITS-1:0] sum_012_1;
+        reg [GROUP_BITS-1:0] sum_34_1;
+        reg [GROUP_BITS-1:0] moment_12_1;
+        reg [GROUP_BITS-1:0] moment_34_1;
+        reg [GROUP_BITS-1:0] sum_2;
+        reg [GROUP_BITS-1:0] moment_2;
+
+        always @(posedge clock) begin
+            sum_012_1 <= w0 + w1 + w2;
+            sum_34_1 <= w3 + w4;
+            moment_12_1 <= w1 + (w2 << 1);
+            moment_34_1 <= w3 + (w3 << 1) + (w4 << 2);
+            sum_2 <= sum_012_1 + sum_34_1;
+            moment_2 <= moment_12_1 + moment_34_1;
         end
-        for (index = 0; index < FIVES; index = index + 1) begin : gen_fives
-            wire [5*WEIGHT_BITS-1:0] five = padded[5*WEIGHT_BITS*index +: 5*WEIGHT_BITS];
-            wire [GROUP_BITS-1:0] w0 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*0 +: WEIGHT_BITS]};
-            wire [GROUP_BITS-1:0] w1 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*1 +: WEIGHT_BITS]};
-            wire [GROUP_BITS-1:0] w2 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*2 +: WEIGHT_BITS]};
-            wire [GROUP_BITS-1:0] w3 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*3 +: WEIGHT_BITS]};
-            wire [GROUP_BITS-1:0] w4 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*4 +: WEIGHT_BITS]};
-            reg [GROUP_BITS-1:0] sum_012_1;
-            reg [GROUP_BITS-1:0] sum_34_1;
-            reg [GROUP_BITS-1:0] moment_12_1;
-            reg [GROUP_BITS-1:0] moment_34_1;
-            reg [GROUP_BITS-1:0] sum_2;
-            reg [GROUP_BITS-1:0] moment_2;
 
-            always @(posedge clock) begin
-                sum_012_1 <= w0 + w1 + w2;
-                sum_34_1 <= w3 + w4;
-                moment_12_1 <= w1 + (w2 << 1);
-                moment_34_1 <= w3 + (w3 << 1) + (w4 << 2);
-                sum_2 <= sum_012_1 + sum_34_1;
-                moment_2 <= moment_12_1 + moment_34_1;
-            end
+        assign sums_2[GROUP_BITS*index +: GROUP_BITS] = sum_2;
+        assign moments_2[GROUP_BITS*index +: GROUP_BITS] = moment_2;
+    end
+    if (FIVES == 1) begin : gen_five
+        assign group_sum = sums_2;
+        assign group_moment = moments_2;
+    end else begin : gen_row
+        // The second five begin 5 points after the first, the third 10
+        wire [GROUP_BITS-1:0] second = sums_2[GROUP_BITS*1 +: GROUP_BITS];
+        wire [GROUP_BITS-1:0] third = sums_2[GROUP_BITS*2 +: GROUP_BITS];
+        wire [GROUP_BITS-1:0] once = second + (third << 1);
+        reg [GROUP_BITS-1:0] sum_3;
+        reg [GROUP_BITS-1:0] moment_3;
 
-            assign sums_2[GROUP_BITS*index +: GROUP_BITS] = sum_2;
-            assign moments_2[GROUP_BITS*index +: GROUP_BITS] = moment_2;
+        always @(posedge clock) begin
+            sum_3 <= sums_2[0 +: GROUP_BITS] + second + third;
+            moment_3 <= moments_2[0 +: GROUP_BITS] + moments_2[GROUP_BITS*1 +: GROUP_BITS]
+                + moments_2[GROUP_BITS*2 +: GROUP_BITS] + once + (once << 2);
         end
-        if (FIVES == 1) begin : gen_five
-            assign group_sum = sums_2;
-            assign group_moment = moments_2;
-        end else begin : gen_row
-            // The second five begin 5 points after the first, the third 10
-            wire [GROUP_BITS-1:0] second = sums_2[GROUP_BITS*1 +: GROUP_BITS];
-            wire [GROUP_BITS-1:0] third = sums_2[GROUP_BITS*2 +: GROUP_BITS];
-            wire [GROUP_BITS-1:0] once = second + (third << 1);
-            reg [GROUP_BITS-1:0] sum_3;
-            reg [GROUP_BITS-1:0] moment_3;
 
-            always @(posedge clock) begin
-                sum_3 <= sums_2[0 +: GROUP_BITS] + second + third;
-                moment_3 <= moments_2[0 +: GROUP_BITS] + moments_2[GROUP_BITS*1 +: GROUP_BITS]
-                    + moments_2[GROUP_BITS*2 +: GROUP_BITS] + once + (once << 2);
-            end
-
-            assign group_sum = sum_3;
-            assign group_moment = moment_3;
-        end
-    endgenerate
+        assign group_sum = sum_3;
+        assign group_moment = moment_3;
+    end
 
     sptfra_mac of_first (
         .clock       (clock),

@@ -50,11 +50,9 @@ module sptfra_grid_level #(
     localparam integer LEAVES = 1 << LEVELS;
     localparam integer MIN_STAGES = LEVELS + 1; // from a row to its least values being kept
 
-    generate
-        if (((SIDE != 11) && (SIDE != 13)) || (WEIGHT_DROP < 1) || (MARGIN_BITS > 17)) begin : gen_check
-            sptfra_error_a_side_has_11_or_13_points_and_a_value_20_to_24_bits_of_fraction invalid ();
-        end
-    endgenerate
+    if (((SIDE != 11) && (SIDE != 13)) || (WEIGHT_DROP < 1) || (MARGIN_BITS > 17)) begin : gen_check
+        sptfra_error_a_side_has_11_or_13_points_and_a_value_20_to_24_bits_of_fraction invalid ();
+    end
 
     // ---- Rows as they come: the least values inside and on the border are kept
     reg [3:0] row_in;
@@ -73,31 +71,29 @@ module sptfra_grid_level #(
 
     genvar index;
 
-    generate
-        for (index = 0; index < LEAVES; index = index + 1) begin : gen_leaves
-            if ((index > 0) && (index < SIDE - 1)) begin : gen_point
-                assign nodes[LEAVES + index] = row_values[VALUE_BITS*index +: VALUE_BITS];
-            end else begin : gen_none
-                assign nodes[LEAVES + index] = {VALUE_BITS{1'b1}};
+    for (index = 0; index < LEAVES; index = index + 1) begin : gen_leaves
+        if ((index > 0) && (index < SIDE - 1)) begin : gen_point
+            assign nodes[LEAVES + index] = row_values[VALUE_BITS*index +: VALUE_BITS];
+        end else begin : gen_none
+            assign nodes[LEAVES + index] = {VALUE_BITS{1'b1}};
+        end
+    end
+    for (index = 1; index < LEAVES; index = index + 1) begin : gen_tree
+        reg [VALUE_BITS-1:0] node;
+
+        // The first of the lowest nodes has one point, the second of its two
+        if (index == LEAVES / 2) begin : gen_second
+            always @(posedge clock) begin
+                node <= nodes[2*index + 1];
+            end
+        end else begin : gen_less
+            always @(posedge clock) begin
+                node <= (nodes[2*index] < nodes[2*index + 1]) ? nodes[2*index] : nodes[2*index + 1];
             end
         end
-        for (index = 1; index < LEAVES; index = index + 1) begin : gen_tree
-            reg [VALUE_BITS-1:0] node;
 
-            // The first of the lowest nodes has one point, the second of its two
-            if (index == LEAVES / 2) begin : gen_second
-                always @(posedge clock) begin
-                    node <= nodes[2*index + 1];
-                end
-            end else begin : gen_less
-                always @(posedge clock) begin
-                    node <= (nodes[2*index] < nodes[2*index + 1]) ? nodes[2*index] : nodes[2*index + 1];
-                end
-            end
-
-            assign nodes[index] = node;
-        end
-    endgenerate
+        assign nodes[index] = node;
+    end
 
     // The border's are those of an outer row as it leaves the tree, and of the ends in every other cycle: there is one
     // before the last row leaves, when all ends are in
@@ -144,15 +140,13 @@ module sptfra_grid_level #(
     reg [VALUE_BITS:0] level;
 
     // Two cycles before the row's first points are weighed
-    generate
-        if (GROUPS == 1) begin : gen_every_cycle
-            assign again = all_in[MIN_STAGES+LEVEL_STAGES-1] || all_in[MIN_STAGES+LEVEL_STAGES]
-                || (reading && (row < LAST_ROW - 4'd1));
-        end else begin : gen_every_row
-            assign again = all_in[MIN_STAGES+LEVEL_STAGES-1]
-                || (reading && (group == LAST_GROUP - 2'd1) && (row != LAST_ROW));
-        end
-    endgenerate
+    if (GROUPS == 1) begin : gen_every_cycle
+        assign again = all_in[MIN_STAGES+LEVEL_STAGES-1] || all_in[MIN_STAGES+LEVEL_STAGES]
+            || (reading && (row < LAST_ROW - 4'd1));
+    end else begin : gen_every_row
+        assign again = all_in[MIN_STAGES+LEVEL_STAGES-1]
+            || (reading && (group == LAST_GROUP - 2'd1) && (row != LAST_ROW));
+    end
 
     always @(posedge clock) begin
         all_in <= {all_in[MIN_STAGES+LEVEL_STAGES-1:1], row_valid && (row_in == LAST_ROW)};
@@ -191,45 +185,43 @@ module sptfra_grid_level #(
     wire [AT_ONCE-1:0] below_2;
     wire [AT_ONCE*WEIGHT_BITS-1:0] weights_5;
 
-    generate
-        if (GROUPS * AT_ONCE > SIDE) begin : gen_padded
-            assign padded_values = { {((GROUPS * AT_ONCE - SIDE) * VALUE_BITS){1'b1}}, row_values};
-        end else begin : gen_full
-            assign padded_values = row_values;
+    if (GROUPS * AT_ONCE > SIDE) begin : gen_padded
+        assign padded_values = { {((GROUPS * AT_ONCE - SIDE) * VALUE_BITS){1'b1}}, row_values};
+    end else begin : gen_full
+        assign padded_values = row_values;
+    end
+    if (GROUPS == 1) begin : gen_row
+        assign group_values_1 = padded_values;
+    end else begin : gen_group
+        assign group_values_1 = padded_values[AT_ONCE*VALUE_BITS*group_1 +: AT_ONCE*VALUE_BITS];
+    end
+    for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_weights
+        reg signed [VALUE_BITS+1:0] depth_2;
+        reg [MARGIN_BITS-1:0] depth_3;
+        wire signed [44:0] square_4;
+        reg [WEIGHT_BITS-1:0] weight_5;
+
+        assign below_2[index] = !depth_2[VALUE_BITS+1] && (depth_2 != {(VALUE_BITS + 2){1'b0}});
+
+        sptfra_multiply square (
+            .clock       (clock),
+            .enable      (1'b1),
+            .coefficient ({ {(18 - MARGIN_BITS){1'b0}}, depth_3}),
+            .data        ({ {(27 - MARGIN_BITS){1'b0}}, depth_3}),
+            .product     (square_4)
+        );
+
+        always @(posedge clock) begin
+            depth_2 <= {1'b0, level} - {2'b00, group_values_1[VALUE_BITS*index +: VALUE_BITS]};
+            // Not more than the margin
+            depth_3 <= depth_2[VALUE_BITS+1] ? {MARGIN_BITS{1'b0}} : depth_2[MARGIN_BITS-1:0];
+            weight_5 <= square_4[WEIGHT_DROP +: WEIGHT_BITS];
         end
-        if (GROUPS == 1) begin : gen_row
-            assign group_values_1 = padded_values;
-        end else begin : gen_group
-            assign group_values_1 = padded_values[AT_ONCE*VALUE_BITS*group_1 +: AT_ONCE*VALUE_BITS];
-        end
-        for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_weights
-            reg signed [VALUE_BITS+1:0] depth_2;
-            reg [MARGIN_BITS-1:0] depth_3;
-            wire signed [44:0] square_4;
-            reg [WEIGHT_BITS-1:0] weight_5;
 
-            assign below_2[index] = !depth_2[VALUE_BITS+1] && (depth_2 != {(VALUE_BITS + 2){1'b0}});
+        assign weights_5[WEIGHT_BITS*index +: WEIGHT_BITS] = weight_5;
 
-            sptfra_multiply square (
-                .clock       (clock),
-                .enable      (1'b1),
-                .coefficient ({ {(18 - MARGIN_BITS){1'b0}}, depth_3}),
-                .data        ({ {(27 - MARGIN_BITS){1'b0}}, depth_3}),
-                .product     (square_4)
-            );
-
-            always @(posedge clock) begin
-                depth_2 <= {1'b0, level} - {2'b00, group_values_1[VALUE_BITS*index +: VALUE_BITS]};
-                // Not more than the margin
-                depth_3 <= depth_2[VALUE_BITS+1] ? {MARGIN_BITS{1'b0}} : depth_2[MARGIN_BITS-1:0];
-                weight_5 <= square_4[WEIGHT_DROP +: WEIGHT_BITS];
-            end
-
-            assign weights_5[WEIGHT_BITS*index +: WEIGHT_BITS] = weight_5;
-
-            wire _unused = &{1'b0, square_4};
-        end
-    endgenerate
+        wire _unused = &{1'b0, square_4};
+    end
 
     always @(posedge clock) begin
         reads <= {reads[STAGES-1:1], reading};

@@ -46,44 +46,42 @@ module sptfra_grid_point #(
 
     genvar taxel;
 
-    generate
-        for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_tensions
-            wire signed [TERM_BITS-1:0] along_x = x[TERM_BITS*taxel +: TERM_BITS];
-            wire signed [TERM_BITS-1:0] along_y = y[TERM_BITS*taxel +: TERM_BITS];
-            wire signed [TERM_BITS-1:0] stress = along_x + along_y;
-            reg presses_1;
-            reg [ONE_BITS-1:0] stress_1;
-            reg [ONE_BITS-1:0] tension_2;
+    for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_tensions
+        wire signed [TERM_BITS-1:0] along_x = x[TERM_BITS*taxel +: TERM_BITS];
+        wire signed [TERM_BITS-1:0] along_y = y[TERM_BITS*taxel +: TERM_BITS];
+        wire signed [TERM_BITS-1:0] stress = along_x + along_y;
+        reg presses_1;
+        reg [ONE_BITS-1:0] stress_1;
+        reg [ONE_BITS-1:0] tension_2;
 
-            wire _unused_stress = &{1'b0, stress[TERM_BITS-2]}; // of a tension, which is below four powers, 0
+        wire _unused_stress = &{1'b0, stress[TERM_BITS-2]}; // of a tension, which is below four powers, 0
 
-            // The sign waits in a register of its own: it resets all bits
-            always @(posedge clock) begin
-                presses_1 <= stress[TERM_BITS-1];
-                if (is_nothing) begin
-                    presses_1 <= 1'b1;
-                end
-                stress_1 <= stress[ONE_BITS-1:0];
-                tension_2 <= stress_1;
-                if (presses_1) begin
-                    tension_2 <= {ONE_BITS{1'b0}};
-                end
+        // The sign waits in a register of its own: it resets all bits
+        always @(posedge clock) begin
+            presses_1 <= stress[TERM_BITS-1];
+            if (is_nothing) begin
+                presses_1 <= 1'b1;
             end
-
-            assign tensions[ONE_BITS*taxel +: ONE_BITS] = tension_2;
-        end
-        if (TAXELS == 1) begin : gen_one
-            assign tension = tensions;
-        end else begin : gen_both
-            reg [TENSION_BITS-1:0] both_3;
-
-            always @(posedge clock) begin
-                both_3 <= {1'b0, tensions[0 +: ONE_BITS]} + {1'b0, tensions[(TAXELS-1)*ONE_BITS +: ONE_BITS]};
+            stress_1 <= stress[ONE_BITS-1:0];
+            tension_2 <= stress_1;
+            if (presses_1) begin
+                tension_2 <= {ONE_BITS{1'b0}};
             end
-
-            assign tension = both_3;
         end
-    endgenerate
+
+        assign tensions[ONE_BITS*taxel +: ONE_BITS] = tension_2;
+    end
+    if (TAXELS == 1) begin : gen_one
+        assign tension = tensions;
+    end else begin : gen_both
+        reg [TENSION_BITS-1:0] both_3;
+
+        always @(posedge clock) begin
+            both_3 <= {1'b0, tensions[0 +: ONE_BITS]} + {1'b0, tensions[(TAXELS-1)*ONE_BITS +: ONE_BITS]};
+        end
+
+        assign tension = both_3;
+    end
 
     always @(posedge clock) begin
         clears <= clear;

@@ -54,12 +54,10 @@ module sptfra_grid_terms #(
     localparam integer MULTIPLE_BITS = U_BITS + 3;
     localparam integer WIDE_BITS = TERM_BITS + STEP_SHIFT; // before the fraction is dropped
 
-    generate
-        // With more points a term would be wider
-        if (((SIDE != 11) && (SIDE != 13)) || ((AT_ONCE != 1) && (AT_ONCE != SIDE))) begin : gen_check
-            sptfra_error_a_side_has_11_or_13_points_all_rows_or_one invalid ();
-        end
-    endgenerate
+    // With more points a term would be wider
+    if (((SIDE != 11) && (SIDE != 13)) || ((AT_ONCE != 1) && (AT_ONCE != SIDE))) begin : gen_check
+        sptfra_error_a_side_has_11_or_13_points_all_rows_or_one invalid ();
+    end
 
     // ---- Scale of the frame: the bits of sum |b|, there three cycles after start
     wire [5:0] sum_bits;
@@ -97,35 +95,33 @@ module sptfra_grid_terms #(
 
     genvar index;
 
-    generate
-        for (index = 0; index < 3; index = index + 1) begin : gen_u
-            wire signed [WIDE-1:0] wide = { {(WIDE - 27){given[27*index + 26]}}, given[27*index +: 27]} << U_LEFT;
-            reg signed [WIDE-1:0] octets_1;
-            wire signed [WIDE-1:0] bits_1 = octets_1 >>> scale[2:0];
-            reg signed [TWICE_BITS-1:0] twice_2;
-            reg sign_2;
-            reg is_whole_2; // twice_2 has all of it
-            reg [U_BITS-1:0] normal_3;
-            wire signed [TWICE_BITS-1:0] rounded_2 = (twice_2 + 1) >>> 1;
-            wire fits_2 = is_whole_2
-                && (rounded_2[TWICE_BITS-1:U_BITS-1] == {(TWICE_BITS - U_BITS + 1){rounded_2[TWICE_BITS-1]}});
+    for (index = 0; index < 3; index = index + 1) begin : gen_u
+        wire signed [WIDE-1:0] wide = { {(WIDE - 27){given[27*index + 26]}}, given[27*index +: 27]} << U_LEFT;
+        reg signed [WIDE-1:0] octets_1;
+        wire signed [WIDE-1:0] bits_1 = octets_1 >>> scale[2:0];
+        reg signed [TWICE_BITS-1:0] twice_2;
+        reg sign_2;
+        reg is_whole_2; // twice_2 has all of it
+        reg [U_BITS-1:0] normal_3;
+        wire signed [TWICE_BITS-1:0] rounded_2 = (twice_2 + 1) >>> 1;
+        wire fits_2 = is_whole_2
+            && (rounded_2[TWICE_BITS-1:U_BITS-1] == {(TWICE_BITS - U_BITS + 1){rounded_2[TWICE_BITS-1]}});
 
-            always @(posedge clock) begin
-                octets_1 <= wide >>> {scale[5:3], 3'd0};
-                twice_2 <= bits_1[TWICE_BITS-1:0];
-                sign_2 <= octets_1[WIDE-1];
-                // Of the bits above, those that a shift of up to 7 brings down, and the others
-                is_whole_2 <= (bits_1[TWICE_BITS+6:TWICE_BITS-1] == {8{octets_1[WIDE-1]}})
-                    && (octets_1[WIDE-1:TWICE_BITS+7] == {(WIDE - TWICE_BITS - 7){octets_1[WIDE-1]}});
-                normal_3 <= fits_2 ? rounded_2[U_BITS-1:0] : {sign_2, {(U_BITS - 1){!sign_2}}};
-            end
-
-            wire _unused_bits = &{1'b0, bits_1};
-
-            assign clips_2[index] = !fits_2;
-            assign u_3[U_BITS*index +: U_BITS] = normal_3;
+        always @(posedge clock) begin
+            octets_1 <= wide >>> {scale[5:3], 3'd0};
+            twice_2 <= bits_1[TWICE_BITS-1:0];
+            sign_2 <= octets_1[WIDE-1];
+            // Of the bits above, those that a shift of up to 7 brings down, and the others
+            is_whole_2 <= (bits_1[TWICE_BITS+6:TWICE_BITS-1] == {8{octets_1[WIDE-1]}})
+                && (octets_1[WIDE-1:TWICE_BITS+7] == {(WIDE - TWICE_BITS - 7){octets_1[WIDE-1]}});
+            normal_3 <= fits_2 ? rounded_2[U_BITS-1:0] : {sign_2, {(U_BITS - 1){!sign_2}}};
         end
-    endgenerate
+
+        wire _unused_bits = &{1'b0, bits_1};
+
+        assign clips_2[index] = !fits_2;
+        assign u_3[U_BITS*index +: U_BITS] = normal_3;
+    end
 
     always @(posedge clock) begin
         valids <= {valids[1], valid};
@@ -151,73 +147,71 @@ module sptfra_grid_terms #(
         base_5 <= base_4;
     end
 
-    generate
-        for (index = 0; index < 2; index = index + 1) begin : gen_multiples
-            wire signed [U_BITS-1:0] u = u_3[U_BITS*(index + 1) +: U_BITS];
-            reg signed [MULTIPLE_BITS-1:0] step_4;
-            reg [MULTIPLES*MULTIPLE_BITS-1:0] times_5;
+    for (index = 0; index < 2; index = index + 1) begin : gen_multiples
+        wire signed [U_BITS-1:0] u = u_3[U_BITS*(index + 1) +: U_BITS];
+        reg signed [MULTIPLE_BITS-1:0] step_4;
+        reg [MULTIPLES*MULTIPLE_BITS-1:0] times_5;
 
-            always @(posedge clock) begin
-                step_4 <= { {(MULTIPLE_BITS - U_BITS){u[U_BITS-1]}}, u};
-                times_5[MULTIPLE_BITS*0 +: MULTIPLE_BITS] <= {MULTIPLE_BITS{1'b0}};
-                times_5[MULTIPLE_BITS*1 +: MULTIPLE_BITS] <= step_4;
-                times_5[MULTIPLE_BITS*2 +: MULTIPLE_BITS] <= step_4 <<< 1;
-                times_5[MULTIPLE_BITS*3 +: MULTIPLE_BITS] <= (step_4 <<< 1) + step_4;
-                times_5[MULTIPLE_BITS*4 +: MULTIPLE_BITS] <= step_4 <<< 2;
-                times_5[MULTIPLE_BITS*5 +: MULTIPLE_BITS] <= (step_4 <<< 2) + step_4;
-                times_5[MULTIPLE_BITS*6 +: MULTIPLE_BITS] <= (step_4 <<< 2) + (step_4 <<< 1);
-            end
-
-            assign multiples_5[MULTIPLES*MULTIPLE_BITS*index +: MULTIPLES*MULTIPLE_BITS] = times_5;
+        always @(posedge clock) begin
+            step_4 <= { {(MULTIPLE_BITS - U_BITS){u[U_BITS-1]}}, u};
+            times_5[MULTIPLE_BITS*0 +: MULTIPLE_BITS] <= {MULTIPLE_BITS{1'b0}};
+            times_5[MULTIPLE_BITS*1 +: MULTIPLE_BITS] <= step_4;
+            times_5[MULTIPLE_BITS*2 +: MULTIPLE_BITS] <= step_4 <<< 1;
+            times_5[MULTIPLE_BITS*3 +: MULTIPLE_BITS] <= (step_4 <<< 1) + step_4;
+            times_5[MULTIPLE_BITS*4 +: MULTIPLE_BITS] <= step_4 <<< 2;
+            times_5[MULTIPLE_BITS*5 +: MULTIPLE_BITS] <= (step_4 <<< 2) + step_4;
+            times_5[MULTIPLE_BITS*6 +: MULTIPLE_BITS] <= (step_4 <<< 2) + (step_4 <<< 1);
         end
 
-        // ---- The terms
-        for (index = 0; index < SIDE; index = index + 1) begin : gen_along_x
-            localparam integer STEPS = (index < REACH) ? REACH - index : index - REACH;
-            wire signed [MULTIPLE_BITS-1:0] times = multiples_5[MULTIPLE_BITS*STEPS +: MULTIPLE_BITS];
-            wire signed [WIDE_BITS-1:0] base = { {(TERM_BITS - U_BITS - 1){base_5[U_BITS]}}, base_5,
-                {STEP_SHIFT{1'b0}}};
-            wire signed [WIDE_BITS-1:0] wide = { {(WIDE_BITS - MULTIPLE_BITS){times[MULTIPLE_BITS-1]}}, times};
-            reg signed [WIDE_BITS-1:0] x_6;
+        assign multiples_5[MULTIPLES*MULTIPLE_BITS*index +: MULTIPLES*MULTIPLE_BITS] = times_5;
+    end
 
-            always @(posedge clock) begin
-                x_6 <= (index < REACH) ? base - wide : base + wide;
-            end
+    // ---- The terms
+    for (index = 0; index < SIDE; index = index + 1) begin : gen_along_x
+        localparam integer STEPS = (index < REACH) ? REACH - index : index - REACH;
+        wire signed [MULTIPLE_BITS-1:0] times = multiples_5[MULTIPLE_BITS*STEPS +: MULTIPLE_BITS];
+        wire signed [WIDE_BITS-1:0] base = { {(TERM_BITS - U_BITS - 1){base_5[U_BITS]}}, base_5,
+            {STEP_SHIFT{1'b0}}};
+        wire signed [WIDE_BITS-1:0] wide = { {(WIDE_BITS - MULTIPLE_BITS){times[MULTIPLE_BITS-1]}}, times};
+        reg signed [WIDE_BITS-1:0] x_6;
 
-            assign along_x[TERM_BITS*index +: TERM_BITS] = x_6[WIDE_BITS-1:STEP_SHIFT];
-
-            wire _unused_x = &{1'b0, x_6[STEP_SHIFT-1:0]};
+        always @(posedge clock) begin
+            x_6 <= (index < REACH) ? base - wide : base + wide;
         end
-        for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_along_y
-            localparam integer STEPS = (index < REACH) ? REACH - index : index - REACH;
-            wire is_negative;
-            wire signed [MULTIPLE_BITS-1:0] times;
-            wire signed [WIDE_BITS-1:0] wide = { {(WIDE_BITS - MULTIPLE_BITS){times[MULTIPLE_BITS-1]}}, times};
-            reg signed [WIDE_BITS-1:0] y_6;
 
-            if (AT_ONCE == 1) begin : gen_one
-                wire [MULTIPLES*MULTIPLE_BITS-1:0] of_u2
-                    = multiples_5[2*MULTIPLES*MULTIPLE_BITS-1:MULTIPLES*MULTIPLE_BITS];
-                wire [3:0] steps = is_negative ? REACH[3:0] - row : row - REACH[3:0];
+        assign along_x[TERM_BITS*index +: TERM_BITS] = x_6[WIDE_BITS-1:STEP_SHIFT];
 
-                assign is_negative = (row < REACH[3:0]);
-                assign times = of_u2[MULTIPLE_BITS*steps[2:0] +: MULTIPLE_BITS];
+        wire _unused_x = &{1'b0, x_6[STEP_SHIFT-1:0]};
+    end
+    for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_along_y
+        localparam integer STEPS = (index < REACH) ? REACH - index : index - REACH;
+        wire is_negative;
+        wire signed [MULTIPLE_BITS-1:0] times;
+        wire signed [WIDE_BITS-1:0] wide = { {(WIDE_BITS - MULTIPLE_BITS){times[MULTIPLE_BITS-1]}}, times};
+        reg signed [WIDE_BITS-1:0] y_6;
 
-                wire _unused_steps = &{1'b0, steps[3]};
-            end else begin : gen_each
-                assign is_negative = (index < REACH);
-                assign times = multiples_5[MULTIPLE_BITS*(MULTIPLES + STEPS) +: MULTIPLE_BITS];
-            end
+        if (AT_ONCE == 1) begin : gen_one
+            wire [MULTIPLES*MULTIPLE_BITS-1:0] of_u2
+                = multiples_5[2*MULTIPLES*MULTIPLE_BITS-1:MULTIPLES*MULTIPLE_BITS];
+            wire [3:0] steps = is_negative ? REACH[3:0] - row : row - REACH[3:0];
 
-            always @(posedge clock) begin
-                y_6 <= is_negative ? -wide : wide;
-            end
+            assign is_negative = (row < REACH[3:0]);
+            assign times = of_u2[MULTIPLE_BITS*steps[2:0] +: MULTIPLE_BITS];
 
-            assign along_y[TERM_BITS*index +: TERM_BITS] = y_6[WIDE_BITS-1:STEP_SHIFT];
-
-            wire _unused_y = &{1'b0, y_6[STEP_SHIFT-1:0]};
+            wire _unused_steps = &{1'b0, steps[3]};
+        end else begin : gen_each
+            assign is_negative = (index < REACH);
+            assign times = multiples_5[MULTIPLE_BITS*(MULTIPLES + STEPS) +: MULTIPLE_BITS];
         end
-    endgenerate
+
+        always @(posedge clock) begin
+            y_6 <= is_negative ? -wide : wide;
+        end
+
+        assign along_y[TERM_BITS*index +: TERM_BITS] = y_6[WIDE_BITS-1:STEP_SHIFT];
+
+        wire _unused_y = &{1'b0, y_6[STEP_SHIFT-1:0]};
+    end
 
     wire _unused = &{1'b0, sum_shifted, largest_shifted, multiples_5, row};
 

@@ -75,14 +75,12 @@ module sptfra_grid_values #(
     localparam [1:0] LAST_IMAGE = 2'd0 - STEP;
     localparam [3:0] LAST_ROW = SIDE[3:0] - 4'd1;
 
-    generate
-        if ((TAXELS != 1) && ((TAXELS != 2) || (IS_SERIAL != 0))) begin : gen_check_taxels
-            sptfra_error_one_taxel_a_cycle_or_two_with_all_points invalid ();
-        end
-        if ((PARALLEL != SIDE) && (PARALLEL != SIDE * SIDE)) begin : gen_check_parallel
-            sptfra_error_a_row_of_points_at_a_time_or_all_of_them invalid ();
-        end
-    endgenerate
+    if ((TAXELS != 1) && ((TAXELS != 2) || (IS_SERIAL != 0))) begin : gen_check_taxels
+        sptfra_error_one_taxel_a_cycle_or_two_with_all_points invalid ();
+    end
+    if ((PARALLEL != SIDE) && (PARALLEL != SIDE * SIDE)) begin : gen_check_parallel
+        sptfra_error_a_row_of_points_at_a_time_or_all_of_them invalid ();
+    end
 
     // ---- Taxels: the images of an orbit one after the other, or two. Index k: k cycles after the address
     reg reading;
@@ -179,40 +177,38 @@ module sptfra_grid_values #(
         end
     end
 
-    generate
-        for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_taxels
-            localparam [1:0] IMAGE = taxel;
-            wire [1:0] of_orbit_2 = image_2 | IMAGE;
+    for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_taxels
+        localparam [1:0] IMAGE = taxel;
+        wire [1:0] of_orbit_2 = image_2 | IMAGE;
 
-            for (index = 0; index < 3; index = index + 1) begin : gen_select
-                wire [4*27-1:0] of_q = orbit_2[4*27*index +: 4*27];
+        for (index = 0; index < 3; index = index + 1) begin : gen_select
+            wire [4*27-1:0] of_q = orbit_2[4*27*index +: 4*27];
 
-                assign taxels_2[27*(3*taxel + index) +: 27] = of_q[27*of_orbit_2 +: 27];
-            end
-
-            sptfra_grid_terms #(
-                .SIDE     (SIDE),
-                .AT_ONCE  (AT_ONCE),
-                .FRACTION (FRACTION),
-                .U_LEFT   (U_LEFT)
-            ) terms (
-                .clock      (clock),
-                .reset      (reset),
-                .start      (start),
-                .stress_sum (stress_sum),
-                .largest    (largest),
-                .margin     (margins[MARGIN_BITS*taxel +: MARGIN_BITS]),
-                .valid      (valids[3]),
-                .u0         (taxels_3[27*(3*taxel + 0) +: 27]),
-                .u1         (taxels_3[27*(3*taxel + 1) +: 27]),
-                .u2         (taxels_3[27*(3*taxel + 2) +: 27]),
-                .row        (pass_8),
-                .along_x    (along_x_9[SIDE*TERM_BITS*taxel +: SIDE*TERM_BITS]),
-                .along_y    (along_y_9[AT_ONCE*TERM_BITS*taxel +: AT_ONCE*TERM_BITS]),
-                .clipped    (clips[taxel])
-            );
+            assign taxels_2[27*(3*taxel + index) +: 27] = of_q[27*of_orbit_2 +: 27];
         end
-    endgenerate
+
+        sptfra_grid_terms #(
+            .SIDE     (SIDE),
+            .AT_ONCE  (AT_ONCE),
+            .FRACTION (FRACTION),
+            .U_LEFT   (U_LEFT)
+        ) terms (
+            .clock      (clock),
+            .reset      (reset),
+            .start      (start),
+            .stress_sum (stress_sum),
+            .largest    (largest),
+            .margin     (margins[MARGIN_BITS*taxel +: MARGIN_BITS]),
+            .valid      (valids[3]),
+            .u0         (taxels_3[27*(3*taxel + 0) +: 27]),
+            .u1         (taxels_3[27*(3*taxel + 1) +: 27]),
+            .u2         (taxels_3[27*(3*taxel + 2) +: 27]),
+            .row        (pass_8),
+            .along_x    (along_x_9[SIDE*TERM_BITS*taxel +: SIDE*TERM_BITS]),
+            .along_y    (along_y_9[AT_ONCE*TERM_BITS*taxel +: AT_ONCE*TERM_BITS]),
+            .clipped    (clips[taxel])
+        );
+    end
 
     // ---- Evaluators. With one for each point, all rows move down by one for a row to leave, through the evaluators'
     // own adders, and row 0 goes to the last one: no choice among rows, and no memory of them
@@ -227,37 +223,35 @@ module sptfra_grid_values #(
         || ((IS_SERIAL == 0) && (lasts[STAGES] || (giving && (row < LAST_ROW - 4'd1))));
     wire [AT_ONCE*SIDE*(VALUE_BITS+1)-1:0] sums;
 
-    generate
-        for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_rows
-            for (column = 0; column < SIDE; column = column + 1) begin : gen_points
-                // Row 0 follows on the last one
-                localparam integer ABOVE = ((index == AT_ONCE - 1) ? 0 : SIDE*(index + 1)) + column;
-                wire [TAXELS*TERM_BITS-1:0] x;
-                wire [TAXELS*TERM_BITS-1:0] y;
+    for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_rows
+        for (column = 0; column < SIDE; column = column + 1) begin : gen_points
+            // Row 0 follows on the last one
+            localparam integer ABOVE = ((index == AT_ONCE - 1) ? 0 : SIDE*(index + 1)) + column;
+            wire [TAXELS*TERM_BITS-1:0] x;
+            wire [TAXELS*TERM_BITS-1:0] y;
 
-                for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_terms
-                    assign x[TERM_BITS*taxel +: TERM_BITS] = along_x_9[TERM_BITS*(SIDE*taxel + column) +: TERM_BITS];
-                    assign y[TERM_BITS*taxel +: TERM_BITS] = along_y_9[TERM_BITS*(AT_ONCE*taxel + index) +: TERM_BITS];
-                end
-
-                sptfra_grid_point #(
-                    .TAXELS     (TAXELS),
-                    .TERM_BITS  (TERM_BITS),
-                    .VALUE_BITS (VALUE_BITS)
-                ) point (
-                    .clock   (clock),
-                    .clear   (start || ((IS_SERIAL != 0) && lasts[STAGES])),
-                    .nothing (nothing_8),
-                    .count   (count_next),
-                    .turn    (turn_next && (IS_SERIAL == 0)),
-                    .x       (x),
-                    .y       (y),
-                    .above   (sums[(VALUE_BITS+1)*ABOVE +: VALUE_BITS+1]),
-                    .sum     (sums[(VALUE_BITS+1)*(SIDE*index + column) +: VALUE_BITS+1])
-                );
+            for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_terms
+                assign x[TERM_BITS*taxel +: TERM_BITS] = along_x_9[TERM_BITS*(SIDE*taxel + column) +: TERM_BITS];
+                assign y[TERM_BITS*taxel +: TERM_BITS] = along_y_9[TERM_BITS*(AT_ONCE*taxel + index) +: TERM_BITS];
             end
+
+            sptfra_grid_point #(
+                .TAXELS     (TAXELS),
+                .TERM_BITS  (TERM_BITS),
+                .VALUE_BITS (VALUE_BITS)
+            ) point (
+                .clock   (clock),
+                .clear   (start || ((IS_SERIAL != 0) && lasts[STAGES])),
+                .nothing (nothing_8),
+                .count   (count_next),
+                .turn    (turn_next && (IS_SERIAL == 0)),
+                .x       (x),
+                .y       (y),
+                .above   (sums[(VALUE_BITS+1)*ABOVE +: VALUE_BITS+1]),
+                .sum     (sums[(VALUE_BITS+1)*(SIDE*index + column) +: VALUE_BITS+1])
+            );
         end
-    endgenerate
+    end
 
     // ---- Rows, when all taxels are in
     always @(posedge clock) begin
@@ -292,27 +286,25 @@ module sptfra_grid_values #(
     wire [SIDE*VALUE_BITS-1:0] row_0;
     wire [SIDE*VALUE_BITS-1:0] row_next;
 
-    generate
-        for (column = 0; column < SIDE; column = column + 1) begin : gen_values
-            wire [VALUE_BITS:0] of_column = sums[(VALUE_BITS+1)*column +: VALUE_BITS+1];
+    for (column = 0; column < SIDE; column = column + 1) begin : gen_values
+        wire [VALUE_BITS:0] of_column = sums[(VALUE_BITS+1)*column +: VALUE_BITS+1];
 
-            assign row_0[VALUE_BITS*column +: VALUE_BITS] = of_column[VALUE_BITS-1:0]
-                | {VALUE_BITS{of_column[VALUE_BITS]}};
-        end
-        if (IS_SERIAL != 0) begin : gen_memory
-            (* ram_style = "distributed" *) reg [SIDE*VALUE_BITS-1:0] memory [0:15];
+        assign row_0[VALUE_BITS*column +: VALUE_BITS] = of_column[VALUE_BITS-1:0]
+            | {VALUE_BITS{of_column[VALUE_BITS]}};
+    end
+    if (IS_SERIAL != 0) begin : gen_memory
+        (* ram_style = "distributed" *) reg [SIDE*VALUE_BITS-1:0] memory [0:15];
 
-            always @(posedge clock) begin
-                if (giving) begin
-                    memory[row] <= row_0;
-                end
+        always @(posedge clock) begin
+            if (giving) begin
+                memory[row] <= row_0;
             end
-
-            assign row_next = all_given ? memory[row] : row_0;
-        end else begin : gen_none
-            assign row_next = row_0;
         end
-    endgenerate
+
+        assign row_next = all_given ? memory[row] : row_0;
+    end else begin : gen_none
+        assign row_next = row_0;
+    end
 
     always @(posedge clock) begin
         if (turn) begin

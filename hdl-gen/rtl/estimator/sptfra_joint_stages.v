@@ -39,11 +39,9 @@ module sptfra_joint_stages #(
     output reg  search_bank
 );
 
-    generate
-        if ((FEATURES != 0) && (FEATURES != 1)) begin : gen_check
-            sptfra_error_there_are_features_or_none invalid ();
-        end
-    endgenerate
+    if ((FEATURES != 0) && (FEATURES != 1)) begin : gen_check
+        sptfra_error_there_are_features_or_none invalid ();
+    end
 
     reg [1:0] u_waiting; // frames whose u_q wait to be searched
     reg searching;

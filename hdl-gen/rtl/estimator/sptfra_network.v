@@ -59,14 +59,12 @@ module sptfra_network #(
     localparam signed [17:0] LIMIT = 18'sd16384; // 1/4
     localparam signed [63:0] WIDE_LIMIT = 64'sd16384;
 
-    generate
-        if ((AT_ONCE != 4) && (AT_ONCE != 8) && (AT_ONCE != 16)) begin : gen_check_units
-            sptfra_error_4_8_or_16_hidden_units_are_worked_on_at_once invalid ();
-        end
-        if (LENGTH < AT_ONCE + 4) begin : gen_check_length
-            sptfra_error_a_pass_is_too_short_to_read_out_the_one_before invalid ();
-        end
-    endgenerate
+    if ((AT_ONCE != 4) && (AT_ONCE != 8) && (AT_ONCE != 16)) begin : gen_check_units
+        sptfra_error_4_8_or_16_hidden_units_are_worked_on_at_once invalid ();
+    end
+    if (LENGTH < AT_ONCE + 4) begin : gen_check_length
+        sptfra_error_a_pass_is_too_short_to_read_out_the_one_before invalid ();
+    end
 
     // ---- Walk over the weights
     reg running;
@@ -134,27 +132,25 @@ module sptfra_network #(
     wire [UNIT_BITS*SUMS-1:0] component_sums;
     reg [UNIT_BITS*SUMS-1:0] held;
     genvar index;
-    generate
-        for (index = 0; index < SUMS; index = index + 1) begin : gen_sums
-            wire signed [47:0] exact;
-            wire signed [47:0] rounded = exact + UNIT_HALF;
+    for (index = 0; index < SUMS; index = index + 1) begin : gen_sums
+        wire signed [47:0] exact;
+        wire signed [47:0] rounded = exact + UNIT_HALF;
 
-            sptfra_mac weigh (
-                .clock       (clock),
-                .reset       (reset),
-                .valid       (valid_1),
-                .first       (first_1),
-                .coefficient (weights_1[18*index +: 18]),
-                .data        (values_1[INPUT_BITS*(index % 4) +: INPUT_BITS]),
-                .accumulator (exact)
-            );
+        sptfra_mac weigh (
+            .clock       (clock),
+            .reset       (reset),
+            .valid       (valid_1),
+            .first       (first_1),
+            .coefficient (weights_1[18*index +: 18]),
+            .data        (values_1[INPUT_BITS*(index % 4) +: INPUT_BITS]),
+            .accumulator (exact)
+        );
 
-            assign component_sums[UNIT_BITS*index +: UNIT_BITS] = rounded[UNIT_SHIFT +: UNIT_BITS];
+        assign component_sums[UNIT_BITS*index +: UNIT_BITS] = rounded[UNIT_SHIFT +: UNIT_BITS];
 
-            // The bits above are copies of the sign
-            wire _unused = &{1'b0, rounded};
-        end
-    endgenerate
+        // The bits above are copies of the sign
+        wire _unused = &{1'b0, rounded};
+    end
 
     // ---- One unit after the other: the mirror images, their rectifiers, mirrored back
     reg [UNIT_WIDTH:0] unit; // AT_ONCE: none
@@ -189,16 +185,14 @@ module sptfra_network #(
     );
 
     // The sum of a unit fits the width, by the plan's bound: the bits above are copies of the sign
-    generate
-        for (index = 0; index < 4; index = index + 1) begin : gen_rectifiers
-            wire [UNIT_BITS+1:0] image = images_3[(UNIT_BITS+2)*index +: UNIT_BITS+2];
-            wire negative = image[UNIT_BITS+1];
+    for (index = 0; index < 4; index = index + 1) begin : gen_rectifiers
+        wire [UNIT_BITS+1:0] image = images_3[(UNIT_BITS+2)*index +: UNIT_BITS+2];
+        wire negative = image[UNIT_BITS+1];
 
-            assign rectifiers_3[UNIT_BITS*index +: UNIT_BITS] = negative ? {UNIT_BITS{1'b0}} : image[UNIT_BITS-1:0];
+        assign rectifiers_3[UNIT_BITS*index +: UNIT_BITS] = negative ? {UNIT_BITS{1'b0}} : image[UNIT_BITS-1:0];
 
-            wire _unused = &{1'b0, image[UNIT_BITS]};
-        end
-    endgenerate
+        wire _unused = &{1'b0, image[UNIT_BITS]};
+    end
 
     sptfra_butterfly #(
         .WIDTH (UNIT_BITS)

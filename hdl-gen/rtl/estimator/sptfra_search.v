@@ -200,21 +200,19 @@ module sptfra_search #(
     wire [2:0] left_fits;
     wire [2:0] right_fits;
 
-    generate
-        if ((POINTS != 1) && (POINTS != 3)) begin : gen_check_points
-            sptfra_error_points_must_be_1_or_3 invalid ();
-        end
-        if (POINTS == 3) begin : gen_three
-            // Of a round with one bit all is at t
-            assign falls = left_last ? {3{totals[47]}} : {totals[47], totals[95], totals[143]};
-            assign left_fits = left_last ? {3{fits_level[0]}} : {fits_level[2], fits_level[1], fits_level[0]};
-            assign right_fits = right_last ? {3{fits_level[0]}} : {fits_level[0], fits_level[1], fits_level[2]};
-        end else begin : gen_one
-            assign falls = {3{totals[47]}};
-            assign left_fits = {3{fits_level[0]}};
-            assign right_fits = {3{fits_level[0]}};
-        end
-    endgenerate
+    if ((POINTS != 1) && (POINTS != 3)) begin : gen_check_points
+        sptfra_error_points_must_be_1_or_3 invalid ();
+    end
+    if (POINTS == 3) begin : gen_three
+        // Of a round with one bit all is at t
+        assign falls = left_last ? {3{totals[47]}} : {totals[47], totals[95], totals[143]};
+        assign left_fits = left_last ? {3{fits_level[0]}} : {fits_level[2], fits_level[1], fits_level[0]};
+        assign right_fits = right_last ? {3{fits_level[0]}} : {fits_level[0], fits_level[1], fits_level[2]};
+    end else begin : gen_one
+        assign falls = {3{totals[47]}};
+        assign left_fits = {3{fits_level[0]}};
+        assign right_fits = {3{fits_level[0]}};
+    end
 
     assign left_keep = (state == SLOPE) ? falls : left_fits;
     assign right_keep = right_fits;

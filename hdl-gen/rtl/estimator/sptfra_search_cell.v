@@ -153,75 +153,71 @@ module sptfra_search_cell #(
     wire term_slope;
     wire term_first;
 
-    generate
-        if (POINTS == 1) begin : gen_point
-            assign point_rectifiers = rectifier_3;
-            assign slope_term = multiplicand_3;
-            assign term_valid = valid[3];
-            assign term_slope = slopes[3];
-            assign term_first = firsts[4];
+    if (POINTS == 1) begin : gen_point
+        assign point_rectifiers = rectifier_3;
+        assign slope_term = multiplicand_3;
+        assign term_valid = valid[3];
+        assign term_slope = slopes[3];
+        assign term_first = firsts[4];
 
-            wire _unused = &{1'b0, valid[4], slopes[4], firsts[5], round};
-        end else begin : gen_points
-            (* keep = "true" *) reg [2:0] round_1;
-            reg signed [41:0] part_2; // beta h
-            reg signed [41:0] part_3;
-            reg signed [44:0] rectifier_4;
-            reg signed [44:0] rectifier_less_4;
-            reg signed [44:0] rectifier_less_2_4;
-            reg signed [26:0] multiplicand_4;
+        wire _unused = &{1'b0, valid[4], slopes[4], firsts[5], round};
+    end else begin : gen_points
+        (* keep = "true" *) reg [2:0] round_1;
+        reg signed [41:0] part_2; // beta h
+        reg signed [41:0] part_3;
+        reg signed [44:0] rectifier_4;
+        reg signed [44:0] rectifier_less_4;
+        reg signed [44:0] rectifier_less_2_4;
+        reg signed [26:0] multiplicand_4;
 
-            always @(posedge clock) begin
-                round_1 <= round;
-                case (round_1)
-                    3'd0: part_2 <= {multiplicand_1, 15'd0};
-                    3'd1: part_2 <= { {2{multiplicand_1[26]}}, multiplicand_1, 13'd0};
-                    3'd2: part_2 <= { {4{multiplicand_1[26]}}, multiplicand_1, 11'd0};
-                    3'd3: part_2 <= { {6{multiplicand_1[26]}}, multiplicand_1, 9'd0};
-                    3'd4: part_2 <= { {8{multiplicand_1[26]}}, multiplicand_1, 7'd0};
-                    3'd5: part_2 <= { {10{multiplicand_1[26]}}, multiplicand_1, 5'd0};
-                    3'd6: part_2 <= { {12{multiplicand_1[26]}}, multiplicand_1, 3'd0};
-                    default: part_2 <= { {14{multiplicand_1[26]}}, multiplicand_1, 1'd0};
-                endcase
-                part_3 <= part_2;
-                rectifier_4 <= rectifier_3;
-                rectifier_less_4 <= rectifier_3 - { {3{part_3[41]}}, part_3};
-                rectifier_less_2_4 <= rectifier_3 - { {2{part_3[41]}}, part_3, 1'b0};
-                multiplicand_4 <= multiplicand_3;
-            end
-
-            assign point_rectifiers = {rectifier_less_2_4, rectifier_less_4, rectifier_4};
-            assign slope_term = multiplicand_4;
-            assign term_valid = valid[4];
-            assign term_slope = slopes[4];
-            assign term_first = firsts[5];
+        always @(posedge clock) begin
+            round_1 <= round;
+            case (round_1)
+                3'd0: part_2 <= {multiplicand_1, 15'd0};
+                3'd1: part_2 <= { {2{multiplicand_1[26]}}, multiplicand_1, 13'd0};
+                3'd2: part_2 <= { {4{multiplicand_1[26]}}, multiplicand_1, 11'd0};
+                3'd3: part_2 <= { {6{multiplicand_1[26]}}, multiplicand_1, 9'd0};
+                3'd4: part_2 <= { {8{multiplicand_1[26]}}, multiplicand_1, 7'd0};
+                3'd5: part_2 <= { {10{multiplicand_1[26]}}, multiplicand_1, 5'd0};
+                3'd6: part_2 <= { {12{multiplicand_1[26]}}, multiplicand_1, 3'd0};
+                default: part_2 <= { {14{multiplicand_1[26]}}, multiplicand_1, 1'd0};
+            endcase
+            part_3 <= part_2;
+            rectifier_4 <= rectifier_3;
+            rectifier_less_4 <= rectifier_3 - { {3{part_3[41]}}, part_3};
+            rectifier_less_2_4 <= rectifier_3 - { {2{part_3[41]}}, part_3, 1'b0};
+            multiplicand_4 <= multiplicand_3;
         end
-    endgenerate
+
+        assign point_rectifiers = {rectifier_less_2_4, rectifier_less_4, rectifier_4};
+        assign slope_term = multiplicand_4;
+        assign term_valid = valid[4];
+        assign term_slope = slopes[4];
+        assign term_first = firsts[5];
+    end
 
     // ---- Last stages: what this taxel adds to a point, and the point's sum
     genvar point;
-    generate
-        for (point = 0; point < POINTS; point = point + 1) begin : gen_sums
-            wire [44:0] rectifier = point_rectifiers[45*point +: 45];
-            reg signed [47:0] term;
-            reg signed [47:0] sum;
+    for (point = 0; point < POINTS; point = point + 1) begin : gen_sums
+        wire [44:0] rectifier = point_rectifiers[45*point +: 45];
+        reg signed [47:0] term;
+        reg signed [47:0] sum;
 
-            always @(posedge clock) begin
-                if (!term_valid || rectifier[44]) begin
-                    term <= 48'sd0;
-                end else if (term_slope) begin
-                    term <= { {21{slope_term[26]}}, slope_term};
-                end else begin
-                    term <= { {(3 + RECTIFIER_DROP){1'b0}}, rectifier[44:RECTIFIER_DROP]};
-                end
-                sum <= (term_first ? 48'sd0 : sum) + term;
+        always @(posedge clock) begin
+            if (!term_valid || rectifier[44]) begin
+                term <= 48'sd0;
+            end else if (term_slope) begin
+                term <= { {21{slope_term[26]}}, slope_term};
+            end else begin
+                term <= { {(3 + RECTIFIER_DROP){1'b0}}, rectifier[44:RECTIFIER_DROP]};
             end
-
-            assign sums[48*point +: 48] = sum;
-
-            wire _unused = &{1'b0, rectifier[RECTIFIER_DROP-1:0]};
+            sum <= (term_first ? 48'sd0 : sum) + term;
         end
-    endgenerate
+
+        assign sums[48*point +: 48] = sum;
+
+        wire _unused = &{1'b0, rectifier[RECTIFIER_DROP-1:0]};
+    end
 
 endmodule
 

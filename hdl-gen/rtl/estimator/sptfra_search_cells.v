@@ -57,14 +57,12 @@ module sptfra_search_cells #(
     localparam integer GROUPS = CELLS / CHANNELS;
     localparam integer LAST_COUNT = ELEMENTS - (GROUPS - 1) * CELL_ELEMENTS;
 
-    generate
-        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
-            sptfra_error_channels_must_be_1_or_4 invalid ();
-        end
-        if ((CELLS % CHANNELS != 0) || (LAST_COUNT < 1) || (LAST_COUNT > CELL_ELEMENTS)) begin : gen_check_cells
-            sptfra_error_cells_do_not_hold_the_taxels invalid ();
-        end
-    endgenerate
+    if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
+        sptfra_error_channels_must_be_1_or_4 invalid ();
+    end
+    if ((CELLS % CHANNELS != 0) || (LAST_COUNT < 1) || (LAST_COUNT > CELL_ELEMENTS)) begin : gen_check_cells
+        sptfra_error_cells_do_not_hold_the_taxels invalid ();
+    end
 
     // ---- Where u_q goes
     wire [31:0] group = { {(32 - ROW_WIDTH){1'b0}}, u_row} / CELL_ELEMENTS;
@@ -85,87 +83,83 @@ module sptfra_search_cells #(
     wire [CELLS-1:0] cell_saturated;
 
     genvar index;
-    generate
-        for (index = 0; index < CELLS; index = index + 1) begin : gen_cells
-            wire signed [DATA_BITS-1:0] u_image = u_values[DATA_BITS*(index % CHANNELS) +: DATA_BITS];
-            wire signed [26:0] u_wide = { {(28 - DATA_BITS){u_image[DATA_BITS-1]}}, u_image[DATA_BITS-2:0]};
-            wire signed [26:0] u_value = ((CHANNELS == 1) || counts[index % CHANNELS]) ? u_wide : 27'sd0;
+    for (index = 0; index < CELLS; index = index + 1) begin : gen_cells
+        wire signed [DATA_BITS-1:0] u_image = u_values[DATA_BITS*(index % CHANNELS) +: DATA_BITS];
+        wire signed [26:0] u_wide = { {(28 - DATA_BITS){u_image[DATA_BITS-1]}}, u_image[DATA_BITS-2:0]};
+        wire signed [26:0] u_value = ((CHANNELS == 1) || counts[index % CHANNELS]) ? u_wide : 27'sd0;
 
-            sptfra_search_cell #(
-                .CELL_ELEMENTS (CELL_ELEMENTS),
-                .ELEMENT_WIDTH (ELEMENT_WIDTH),
-                .COUNT         ((index / CHANNELS == GROUPS - 1) ? LAST_COUNT : CELL_ELEMENTS),
-                .POINTS        (POINTS)
-            ) rectifiers (
-                .clock        (clock),
-                .reset        (reset),
-                .fill         (u_valid & {3{group == index / CHANNELS}}),
-                .fill_bank    (fill_bank),
-                .fill_element (fill_element),
-                .fill_value   (u_value),
-                .read         (read),
-                .first        (element == {ELEMENT_WIDTH{1'b0}}),
-                .bank         (bank),
-                .element      (element),
-                .alpha_pass   (alpha_pass),
-                .beta_pass    (beta_pass),
-                .x_is_free    (x_is_free),
-                .want_slope   (want_slope),
-                .factor       (factor),
-                .round        (round),
-                .sums         (sums[48*POINTS*index +: 48*POINTS]),
-                .saturated    (cell_saturated[index])
-            );
-        end
-    endgenerate
+        sptfra_search_cell #(
+            .CELL_ELEMENTS (CELL_ELEMENTS),
+            .ELEMENT_WIDTH (ELEMENT_WIDTH),
+            .COUNT         ((index / CHANNELS == GROUPS - 1) ? LAST_COUNT : CELL_ELEMENTS),
+            .POINTS        (POINTS)
+        ) rectifiers (
+            .clock        (clock),
+            .reset        (reset),
+            .fill         (u_valid & {3{group == index / CHANNELS}}),
+            .fill_bank    (fill_bank),
+            .fill_element (fill_element),
+            .fill_value   (u_value),
+            .read         (read),
+            .first        (element == {ELEMENT_WIDTH{1'b0}}),
+            .bank         (bank),
+            .element      (element),
+            .alpha_pass   (alpha_pass),
+            .beta_pass    (beta_pass),
+            .x_is_free    (x_is_free),
+            .want_slope   (want_slope),
+            .factor       (factor),
+            .round        (round),
+            .sums         (sums[48*POINTS*index +: 48*POINTS]),
+            .saturated    (cell_saturated[index])
+        );
+    end
 
     assign saturated = (cell_saturated != {CELLS{1'b0}});
 
     // ---- Sums, and whether they are within the level
     genvar point;
-    generate
-        for (point = 0; point < POINTS; point = point + 1) begin : gen_trees
-            wire [48*CELLS-1:0] terms;
-            wire signed [47:0] total;
-            wire signed [47:0] total_left;
-            wire signed [47:0] total_right;
+    for (point = 0; point < POINTS; point = point + 1) begin : gen_trees
+        wire [48*CELLS-1:0] terms;
+        wire signed [47:0] total;
+        wire signed [47:0] total_left;
+        wire signed [47:0] total_right;
 
-            for (index = 0; index < CELLS; index = index + 1) begin : gen_terms
-                assign terms[48*index +: 48] = sums[48*(POINTS*index + point) +: 48];
-            end
-
-            sptfra_tree #(
-                .COUNT (CELLS),
-                .WIDTH (48)
-            ) tree (
-                .clock   (clock),
-                .numbers (terms),
-                .halves  ({total_right, total_left}),
-                .result  (total)
-            );
-
-            assign totals[48*point +: 48] = total;
-
-            if (CELLS == 1) begin : gen_compare
-                assign fits_level[point] = (total <= level);
-
-                wire _unused = &{1'b0, total_left, total_right};
-            end else begin : gen_compare_beside
-                // Beside the root of the tree, rather than behind it
-                wire signed [49:0] room = { {2{level[47]}}, level} - { {2{total_left[47]}}, total_left}
-                    - { {2{total_right[47]}}, total_right};
-                reg fits;
-
-                always @(posedge clock) begin
-                    fits <= !room[49];
-                end
-
-                assign fits_level[point] = fits;
-
-                wire _unused = &{1'b0, room[48:0]};
-            end
+        for (index = 0; index < CELLS; index = index + 1) begin : gen_terms
+            assign terms[48*index +: 48] = sums[48*(POINTS*index + point) +: 48];
         end
-    endgenerate
+
+        sptfra_tree #(
+            .COUNT (CELLS),
+            .WIDTH (48)
+        ) tree (
+            .clock   (clock),
+            .numbers (terms),
+            .halves  ({total_right, total_left}),
+            .result  (total)
+        );
+
+        assign totals[48*point +: 48] = total;
+
+        if (CELLS == 1) begin : gen_compare
+            assign fits_level[point] = (total <= level);
+
+            wire _unused = &{1'b0, total_left, total_right};
+        end else begin : gen_compare_beside
+            // Beside the root of the tree, rather than behind it
+            wire signed [49:0] room = { {2{level[47]}}, level} - { {2{total_left[47]}}, total_left}
+                - { {2{total_right[47]}}, total_right};
+            reg fits;
+
+            always @(posedge clock) begin
+                fits <= !room[49];
+            end
+
+            assign fits_level[point] = fits;
+
+            wire _unused = &{1'b0, room[48:0]};
+        end
+    end
 
     wire _unused = &{1'b0, counts};
 

@@ -54,37 +54,35 @@ module sptfra_standard_error #(
 
     // ---- What the noise is a share of, and what it comes to
     wire [22:0] by_noise;
-    generate
-        if (LARGEST != 23'd0) begin : gen_typical
-            reg [53:0] scaled;
-            wire [40:0] most = {divisor, 1'b0} - 41'd1;
+    if (LARGEST != 23'd0) begin : gen_typical
+        reg [53:0] scaled;
+        wire [40:0] most = {divisor, 1'b0} - 41'd1;
 
-            assign peak = (scaled > {13'd0, most}) ? most : scaled[40:0];
-            // A quotient of sixteenths; 64 |F_z| are as good as more
-            assign by_noise = (next_sum[33:31] != 3'd0) ? 23'h3fffff : {1'b0, next_sum[30:9]};
+        assign peak = (scaled > {13'd0, most}) ? most : scaled[40:0];
+        // A quotient of sixteenths; 64 |F_z| are as good as more
+        assign by_noise = (next_sum[33:31] != 3'd0) ? 23'h3fffff : {1'b0, next_sum[30:9]};
 
-            always @(posedge clock) begin
-                if (start) begin
-                    scaled <= {31'd0, LARGEST} << frame_exponent;
-                end
+        always @(posedge clock) begin
+            if (start) begin
+                scaled <= {31'd0, LARGEST} << frame_exponent;
             end
-
-            wire _unused_largest = &{1'b0, largest};
-        end else begin : gen_own
-            reg [26:0] held;
-
-            assign peak = {14'd0, held};
-            assign by_noise = {2'd0, next_sum[33:13]};
-
-            always @(posedge clock) begin
-                if (start) begin
-                    held <= largest;
-                end
-            end
-
-            wire _unused_exponent = &{1'b0, frame_exponent};
         end
-    endgenerate
+
+        wire _unused_largest = &{1'b0, largest};
+    end else begin : gen_own
+        reg [26:0] held;
+
+        assign peak = {14'd0, held};
+        assign by_noise = {2'd0, next_sum[33:13]};
+
+        always @(posedge clock) begin
+            if (start) begin
+                held <= largest;
+            end
+        end
+
+        wire _unused_exponent = &{1'b0, frame_exponent};
+    end
 
     // ---- Two errors added, then with the third: each in three cycles, for short paths
     reg [22:0] share_noise;
@@ -149,37 +147,35 @@ module sptfra_standard_error #(
     end
 
     // ---- Root of the variance, two bits of it a cycle, and its product with NOISE
-    generate
-        if (AVERAGED != 0) begin : gen_averaged
-            reg [25:0] radicand; // what is left of it
-            reg [12:0] root;
-            reg [14:0] rest;
-            reg [29:0] product;
-            wire [16:0] trial = {rest, radicand[25:24]} - {2'b00, root, 2'b01};
-            wire bit_there = !trial[16];
+    if (AVERAGED != 0) begin : gen_averaged
+        reg [25:0] radicand; // what is left of it
+        reg [12:0] root;
+        reg [14:0] rest;
+        reg [29:0] product;
+        wire [16:0] trial = {rest, radicand[25:24]} - {2'b00, root, 2'b01};
+        wire bit_there = !trial[16];
 
-            assign noise = product[28:12];
+        assign noise = product[28:12];
 
-            always @(posedge clock) begin
-                if (start) begin
-                    radicand <= {1'b0, variance};
-                    root <= 13'd0;
-                    rest <= 15'd0;
-                    product <= 30'd0;
-                end else if (step < 6'd13) begin
-                    radicand <= {radicand[23:0], 2'b00};
-                    root <= {root[11:0], bit_there};
-                    rest <= bit_there ? trial[14:0] : {rest[12:0], radicand[25:24]};
-                    product <= {product[28:0], 1'b0} + (bit_there ? {13'd0, NOISE} : 30'd0);
-                end
+        always @(posedge clock) begin
+            if (start) begin
+                radicand <= {1'b0, variance};
+                root <= 13'd0;
+                rest <= 15'd0;
+                product <= 30'd0;
+            end else if (step < 6'd13) begin
+                radicand <= {radicand[23:0], 2'b00};
+                root <= {root[11:0], bit_there};
+                rest <= bit_there ? trial[14:0] : {rest[12:0], radicand[25:24]};
+                product <= {product[28:0], 1'b0} + (bit_there ? {13'd0, NOISE} : 30'd0);
             end
-
-            wire _unused_averaged = &{1'b0, trial[15], product[29], product[11:0]};
-        end else begin : gen_alone
-            assign noise = NOISE;
-            wire _unused_variance = &{1'b0, variance};
         end
-    endgenerate
+
+        wire _unused_averaged = &{1'b0, trial[15], product[29], product[11:0]};
+    end else begin : gen_alone
+        assign noise = NOISE;
+        wire _unused_variance = &{1'b0, variance};
+    end
 
     wire _unused = &{1'b0, mantissa[4:0], kept[40], sum[33], smaller[0]};
 

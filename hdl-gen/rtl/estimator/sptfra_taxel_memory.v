@@ -43,29 +43,27 @@ module sptfra_taxel_memory #(
 
     genvar index;
 
-    generate
-        for (index = 0; index < 4; index = index + 1) begin : gen_images
-            wire signed [DATA_BITS-1:0] value = u_values[DATA_BITS*index +: DATA_BITS];
+    for (index = 0; index < 4; index = index + 1) begin : gen_images
+        wire signed [DATA_BITS-1:0] value = u_values[DATA_BITS*index +: DATA_BITS];
 
-            assign wide[27*index +: 27] = counts[index]
-                ? { {(28 - DATA_BITS){value[DATA_BITS-1]}}, value[DATA_BITS-2:0]} : 27'd0;
-        end
-        for (index = 0; index < 3; index = index + 1) begin : gen_memories
-            sptfra_ram #(
-                .WIDTH         (4 * 27),
-                .DEPTH         (2 << ROW_WIDTH),
-                .ADDRESS_WIDTH (ROW_WIDTH + 1)
-            ) of_q (
-                .clock         (clock),
-                .write_enable  (u_valid[index]),
-                .write_address ({fill_bank, u_orbit}),
-                .write_data    (wide),
-                .read_enable   (1'b1),
-                .read_address  ({read_bank, read_orbit}),
-                .read_data     (read_values[4*27*index +: 4*27])
-            );
-        end
-    endgenerate
+        assign wide[27*index +: 27] = counts[index]
+            ? { {(28 - DATA_BITS){value[DATA_BITS-1]}}, value[DATA_BITS-2:0]} : 27'd0;
+    end
+    for (index = 0; index < 3; index = index + 1) begin : gen_memories
+        sptfra_ram #(
+            .WIDTH         (4 * 27),
+            .DEPTH         (2 << ROW_WIDTH),
+            .ADDRESS_WIDTH (ROW_WIDTH + 1)
+        ) of_q (
+            .clock         (clock),
+            .write_enable  (u_valid[index]),
+            .write_address ({fill_bank, u_orbit}),
+            .write_data    (wide),
+            .read_enable   (1'b1),
+            .read_address  ({read_bank, read_orbit}),
+            .read_data     (read_values[4*27*index +: 4*27])
+        );
+    end
 
 endmodule
 

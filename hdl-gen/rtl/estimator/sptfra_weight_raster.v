@@ -38,11 +38,9 @@ module sptfra_weight_raster #(
     output wire last
 );
 
-    generate
-        if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
-            sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
-        end
-    endgenerate
+    if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
+        sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
+    end
 
     localparam X_WIDTH = $clog2(COLUMNS + 1);
     localparam Y_WIDTH = $clog2(ROWS);
@@ -93,40 +91,38 @@ module sptfra_weight_raster #(
     assign last = lasts[4];
     assign fresh = names[3*LABEL_WIDTH +: LABEL_WIDTH];
 
-    generate
-        if (CHANNELS == 4) begin : gen_orbits
-            sptfra_taxel_walk #(
-                .COLUMNS (COLUMNS),
-                .ROWS    (ROWS)
-            ) walk (
-                .clock  (clock),
-                .rewind (start),
-                .step   (walks && !border),
-                .taxels (2'd1),
-                .orbit  (element),
-                .image  (image)
-            );
+    if (CHANNELS == 4) begin : gen_orbits
+        sptfra_taxel_walk #(
+            .COLUMNS (COLUMNS),
+            .ROWS    (ROWS)
+        ) walk (
+            .clock  (clock),
+            .rewind (start),
+            .step   (walks && !border),
+            .taxels (2'd1),
+            .orbit  (element),
+            .image  (image)
+        );
 
-            assign weight_2 = weights_2[DATA_BITS*image_2 +: DATA_BITS];
-        end else begin : gen_taxels
-            reg [ROW_WIDTH-1:0] taxel;
+        assign weight_2 = weights_2[DATA_BITS*image_2 +: DATA_BITS];
+    end else begin : gen_taxels
+        reg [ROW_WIDTH-1:0] taxel;
 
-            assign element = taxel;
-            assign image = 2'd0;
-            assign weight_2 = weights_2[DATA_BITS-1:0];
+        assign element = taxel;
+        assign image = 2'd0;
+        assign weight_2 = weights_2[DATA_BITS-1:0];
 
-            always @(posedge clock) begin
-                if (walks && !border) begin
-                    taxel <= taxel + 1'b1;
-                end
-                if (start) begin
-                    taxel <= {ROW_WIDTH{1'b0}};
-                end
+        always @(posedge clock) begin
+            if (walks && !border) begin
+                taxel <= taxel + 1'b1;
             end
-
-            wire _unused_image = &{1'b0, image_2};
+            if (start) begin
+                taxel <= {ROW_WIDTH{1'b0}};
+            end
         end
-    endgenerate
+
+        wire _unused_image = &{1'b0, image_2};
+    end
 
     sptfra_ram #(
         .WIDTH         (CHANNELS * DATA_BITS),

@@ -32,11 +32,9 @@ module sptfra_weight_totals #(
     output reg  [DATA_BITS-1:0] largest
 );
 
-    generate
-        if (SUM_BITS < DATA_BITS + 3) begin : gen_check_sum
-            sptfra_error_sums_must_have_three_bits_more_than_weights invalid ();
-        end
-    endgenerate
+    if (SUM_BITS < DATA_BITS + 3) begin : gen_check_sum
+        sptfra_error_sums_must_have_three_bits_more_than_weights invalid ();
+    end
 
     reg [3:1] valids;
     reg [3:1] firsts;
@@ -61,62 +59,60 @@ module sptfra_weight_totals #(
         end
     end
 
-    generate
-        if (CHANNELS == 4) begin : gen_orbits
-            // ---- Stage 1: what counts. Stage 2: two and two. Stage 3: all four
-            wire [3:0] counts;
-            reg [3:0] counts_1;
-            reg [4*DATA_BITS-1:0] weights_1;
-            wire [DATA_BITS-1:0] image_1 [0:3];
-            wire [DATA_BITS-1:0] own_1 [0:3];
-            reg [DATA_BITS:0] left_2;
-            reg [DATA_BITS:0] right_2;
-            reg [DATA_BITS-1:0] larger_left_2;
-            reg [DATA_BITS-1:0] larger_right_2;
-            reg [DATA_BITS+1:0] all_3;
-            reg [DATA_BITS-1:0] larger_3;
-            genvar index;
+    if (CHANNELS == 4) begin : gen_orbits
+        // ---- Stage 1: what counts. Stage 2: two and two. Stage 3: all four
+        wire [3:0] counts;
+        reg [3:0] counts_1;
+        reg [4*DATA_BITS-1:0] weights_1;
+        wire [DATA_BITS-1:0] image_1 [0:3];
+        wire [DATA_BITS-1:0] own_1 [0:3];
+        reg [DATA_BITS:0] left_2;
+        reg [DATA_BITS:0] right_2;
+        reg [DATA_BITS-1:0] larger_left_2;
+        reg [DATA_BITS-1:0] larger_right_2;
+        reg [DATA_BITS+1:0] all_3;
+        reg [DATA_BITS-1:0] larger_3;
+        genvar index;
 
-            sptfra_orbit_images #(
-                .COLUMNS   (COLUMNS),
-                .ROWS      (ROWS),
-                .ROW_WIDTH (ROW_WIDTH)
-            ) images (
-                .orbit  (row),
-                .counts (counts)
-            );
+        sptfra_orbit_images #(
+            .COLUMNS   (COLUMNS),
+            .ROWS      (ROWS),
+            .ROW_WIDTH (ROW_WIDTH)
+        ) images (
+            .orbit  (row),
+            .counts (counts)
+        );
 
-            for (index = 0; index < 4; index = index + 1) begin : gen_images
-                assign image_1[index] = weights_1[DATA_BITS*index +: DATA_BITS];
-                assign own_1[index] = counts_1[index] ? image_1[index] : {DATA_BITS{1'b0}};
-            end
-
-            assign sum_3 = all_3;
-            assign largest_3 = larger_3;
-
-            always @(posedge clock) begin
-                counts_1 <= counts;
-                weights_1 <= weights;
-                left_2 <= {1'b0, own_1[0]} + {1'b0, own_1[1]};
-                right_2 <= {1'b0, own_1[2]} + {1'b0, own_1[3]};
-                larger_left_2 <= (image_1[0] > image_1[1]) ? image_1[0] : image_1[1];
-                larger_right_2 <= (image_1[2] > image_1[3]) ? image_1[2] : image_1[3];
-                all_3 <= {1'b0, left_2} + {1'b0, right_2};
-                larger_3 <= (larger_left_2 > larger_right_2) ? larger_left_2 : larger_right_2;
-            end
-        end else begin : gen_taxels
-            reg [3*DATA_BITS-1:0] passing; // in as many stages
-
-            assign sum_3 = {2'b00, passing[2*DATA_BITS +: DATA_BITS]};
-            assign largest_3 = passing[2*DATA_BITS +: DATA_BITS];
-
-            always @(posedge clock) begin
-                passing <= {passing[2*DATA_BITS-1:0], weights};
-            end
-
-            wire _unused = &{1'b0, row};
+        for (index = 0; index < 4; index = index + 1) begin : gen_images
+            assign image_1[index] = weights_1[DATA_BITS*index +: DATA_BITS];
+            assign own_1[index] = counts_1[index] ? image_1[index] : {DATA_BITS{1'b0}};
         end
-    endgenerate
+
+        assign sum_3 = all_3;
+        assign largest_3 = larger_3;
+
+        always @(posedge clock) begin
+            counts_1 <= counts;
+            weights_1 <= weights;
+            left_2 <= {1'b0, own_1[0]} + {1'b0, own_1[1]};
+            right_2 <= {1'b0, own_1[2]} + {1'b0, own_1[3]};
+            larger_left_2 <= (image_1[0] > image_1[1]) ? image_1[0] : image_1[1];
+            larger_right_2 <= (image_1[2] > image_1[3]) ? image_1[2] : image_1[3];
+            all_3 <= {1'b0, left_2} + {1'b0, right_2};
+            larger_3 <= (larger_left_2 > larger_right_2) ? larger_left_2 : larger_right_2;
+        end
+    end else begin : gen_taxels
+        reg [3*DATA_BITS-1:0] passing; // in as many stages
+
+        assign sum_3 = {2'b00, passing[2*DATA_BITS +: DATA_BITS]};
+        assign largest_3 = passing[2*DATA_BITS +: DATA_BITS];
+
+        always @(posedge clock) begin
+            passing <= {passing[2*DATA_BITS-1:0], weights};
+        end
+
+        wire _unused = &{1'b0, row};
+    end
 
 endmodule
 

@@ -153,111 +153,109 @@ module sptfra_banks #(
     wire [33:0] curve_result;
     wire of_curve;
 
-    generate
-        if (HAS_MORE != 0) begin : gen_more
-            reg of_curve_1;
+    if (HAS_MORE != 0) begin : gen_more
+        reg of_curve_1;
 
-            assign words[OFFSET_BITS+28 +: 34] = {
-                curve_result[33] || map_result[33],
-                of_curve ? curve_result[32] : map_result[32],
-                of_curve_1 ? curve_result[31:0] : map_result[31:0]
-            };
-            assign of_curve = (CURVE_LEVELS != 0)
-                && (command[TAXEL_WIDTH+OFFSET_BITS+63 +: 16] >= FIRST_OF_CURVE[15:0]);
+        assign words[OFFSET_BITS+28 +: 34] = {
+            curve_result[33] || map_result[33],
+            of_curve ? curve_result[32] : map_result[32],
+            of_curve_1 ? curve_result[31:0] : map_result[31:0]
+        };
+        assign of_curve = (CURVE_LEVELS != 0)
+            && (command[TAXEL_WIDTH+OFFSET_BITS+63 +: 16] >= FIRST_OF_CURVE[15:0]);
 
-            always @(posedge clock) begin
-                of_curve_1 <= of_curve;
-            end
-        end else begin : gen_thresholds_last
-            assign of_curve = 1'b0;
-            wire _unused_results = &{1'b0, map_result, curve_result, of_curve};
+        always @(posedge clock) begin
+            of_curve_1 <= of_curve;
         end
-        if (REPLACEABLE != 0) begin : gen_map
-            wire [55:0] more = command[COMMAND_BITS-1 -: 56];
+    end else begin : gen_thresholds_last
+        assign of_curve = 1'b0;
+        wire _unused_results = &{1'b0, map_result, curve_result, of_curve};
+    end
+    if (REPLACEABLE != 0) begin : gen_map
+        wire [55:0] more = command[COMMAND_BITS-1 -: 56];
 
-            sptfra_dead_bank #(
-                .TAXELS       (TAXELS),
-                .REPLACEABLE  (REPLACEABLE),
-                .FIRST        (FIRST_OF_MAP[15:0]),
-                .COUNT        (REPLACED_COUNT),
-                .WEIGHT_SHIFT (REPLACED_SHIFT),
-                .NUMBERS      (REPLACED_TAXELS),
-                .ROM_DIR      (ROM_DIR),
-                .ROM_NAME     (ROM_NAME)
-            ) dead_bank (
-                .clock        (clock),
-                .command      ({more[55:51], more[50:49] & {2{!of_curve}}, more[48:0]}),
-                .result       (map_result),
-                .active       (active),
-                .active_count (active_count),
-                .read_enable  (1'b1),
-                .read_bank    (bank),
-                .read_taxel   (taxel_ahead),
-                .read_weights (weights),
-                .read_count   (count),
-                .read_shift   (weight_shift),
-                .read_numbers (numbers)
-            );
-        end else begin : gen_no_map
-            assign map_result = 34'd0;
-            assign active_count = 4'd0;
-            assign weights = {18*PLACES{1'b0}};
-            assign count = 4'd0;
-            assign weight_shift = 5'd0;
-            assign numbers = {16*PLACES{1'b0}};
-            wire _unused_map = &{1'b0, FIRST_OF_MAP, REPLACED_COUNT, REPLACED_SHIFT, REPLACED_TAXELS};
-        end
-        if (CURVE_LEVELS != 0) begin : gen_curve
-            wire [55:0] more = command[COMMAND_BITS-1 -: 56];
-            wire [2*27*SEGMENTS-1:0] both_knots;
-            wire [13:0] both_counts;
-            wire [53:0] lasts, reaches;
-            wire [5:0] shift;
+        sptfra_dead_bank #(
+            .TAXELS       (TAXELS),
+            .REPLACEABLE  (REPLACEABLE),
+            .FIRST        (FIRST_OF_MAP[15:0]),
+            .COUNT        (REPLACED_COUNT),
+            .WEIGHT_SHIFT (REPLACED_SHIFT),
+            .NUMBERS      (REPLACED_TAXELS),
+            .ROM_DIR      (ROM_DIR),
+            .ROM_NAME     (ROM_NAME)
+        ) dead_bank (
+            .clock        (clock),
+            .command      ({more[55:51], more[50:49] & {2{!of_curve}}, more[48:0]}),
+            .result       (map_result),
+            .active       (active),
+            .active_count (active_count),
+            .read_enable  (1'b1),
+            .read_bank    (bank),
+            .read_taxel   (taxel_ahead),
+            .read_weights (weights),
+            .read_count   (count),
+            .read_shift   (weight_shift),
+            .read_numbers (numbers)
+        );
+    end else begin : gen_no_map
+        assign map_result = 34'd0;
+        assign active_count = 4'd0;
+        assign weights = {18*PLACES{1'b0}};
+        assign count = 4'd0;
+        assign weight_shift = 5'd0;
+        assign numbers = {16*PLACES{1'b0}};
+        wire _unused_map = &{1'b0, FIRST_OF_MAP, REPLACED_COUNT, REPLACED_SHIFT, REPLACED_TAXELS};
+    end
+    if (CURVE_LEVELS != 0) begin : gen_curve
+        wire [55:0] more = command[COMMAND_BITS-1 -: 56];
+        wire [2*27*SEGMENTS-1:0] both_knots;
+        wire [13:0] both_counts;
+        wire [53:0] lasts, reaches;
+        wire [5:0] shift;
 
-            assign knots = bank ? both_knots[27*SEGMENTS +: 27*SEGMENTS] : both_knots[0 +: 27*SEGMENTS];
-            assign segments = bank ? both_counts[13:7] : both_counts[6:0];
-            assign last = bank ? $signed(lasts[53:27]) : $signed(lasts[26:0]);
-            assign reach = bank ? reaches[53:27] : reaches[26:0];
-            assign line[5:0] = shift - 6'd1;
+        assign knots = bank ? both_knots[27*SEGMENTS +: 27*SEGMENTS] : both_knots[0 +: 27*SEGMENTS];
+        assign segments = bank ? both_counts[13:7] : both_counts[6:0];
+        assign last = bank ? $signed(lasts[53:27]) : $signed(lasts[26:0]);
+        assign reach = bank ? reaches[53:27] : reaches[26:0];
+        assign line[5:0] = shift - 6'd1;
 
-            sptfra_curve_bank #(
-                .LEVELS     (CURVE_LEVELS),
-                .FIRST      (FIRST_OF_CURVE[15:0]),
-                .COUNT      (CURVE_COUNT),
-                .KNOTS      (CURVE_KNOTS),
-                .LAST       (CURVE_LAST),
-                .LAST_VALUE (CURVE_LAST_VALUE),
-                .ROM_DIR    (ROM_DIR),
-                .ROM_NAME   (ROM_NAME)
-            ) curve_bank (
-                .clock        (clock),
-                .command      ({more[55:51], more[50:49] & {2{of_curve}}, more[48:0]}),
-                .result       (curve_result),
-                .active       (active),
-                .tare_run     (tare_run),
-                .copying      (copying),
-                .knots        (both_knots),
-                .counts       (both_counts),
-                .lasts        (lasts),
-                .reaches      (reaches),
-                .read_bank    (bank),
-                .read_segment (segment),
-                .read_line    ({line[77:6], shift})
-            );
-        end else begin : gen_no_curve
-            assign curve_result = 34'd0;
-            assign copying = 1'b0;
-            assign knots = {27*SEGMENTS{1'b0}};
-            assign segments = 7'd0;
-            assign last = 27'sd0;
-            assign reach = 27'd0;
-            assign line = 78'd0;
-            wire _unused_curve = &{1'b0, segment, tare_run, CURVE_COUNT, CURVE_KNOTS, CURVE_LAST, CURVE_LAST_VALUE};
-        end
-        if (HAS_MORE == 0) begin : gen_only
-            wire _unused_more = &{1'b0, active, FIRST_OF_CURVE};
-        end
-    endgenerate
+        sptfra_curve_bank #(
+            .LEVELS     (CURVE_LEVELS),
+            .FIRST      (FIRST_OF_CURVE[15:0]),
+            .COUNT      (CURVE_COUNT),
+            .KNOTS      (CURVE_KNOTS),
+            .LAST       (CURVE_LAST),
+            .LAST_VALUE (CURVE_LAST_VALUE),
+            .ROM_DIR    (ROM_DIR),
+            .ROM_NAME   (ROM_NAME)
+        ) curve_bank (
+            .clock        (clock),
+            .command      ({more[55:51], more[50:49] & {2{of_curve}}, more[48:0]}),
+            .result       (curve_result),
+            .active       (active),
+            .tare_run     (tare_run),
+            .copying      (copying),
+            .knots        (both_knots),
+            .counts       (both_counts),
+            .lasts        (lasts),
+            .reaches      (reaches),
+            .read_bank    (bank),
+            .read_segment (segment),
+            .read_line    ({line[77:6], shift})
+        );
+    end else begin : gen_no_curve
+        assign curve_result = 34'd0;
+        assign copying = 1'b0;
+        assign knots = {27*SEGMENTS{1'b0}};
+        assign segments = 7'd0;
+        assign last = 27'sd0;
+        assign reach = 27'd0;
+        assign line = 78'd0;
+        wire _unused_curve = &{1'b0, segment, tare_run, CURVE_COUNT, CURVE_KNOTS, CURVE_LAST, CURVE_LAST_VALUE};
+    end
+    if (HAS_MORE == 0) begin : gen_only
+        wire _unused_more = &{1'b0, active, FIRST_OF_CURVE};
+    end
 
     // ---- Tare
     assign tare_result[29] = finished && !copying;

@@ -116,17 +116,15 @@ module sptfra_bz #(
     localparam VALUE_STAGES = NUMBER_STAGES + ((CURVE_LEVELS != 0) ? CURVE_LEVELS + 7 : (PER_TAXEL != 0) ? 2 : 0);
     localparam STAGES = VALUE_STAGES + ((COUNTS == 0) ? 0 : (CURVE_LEVELS != 0) ? 7 : 4);
 
-    generate
-        if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
-            sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
-        end
-        if ((SAMPLES != 1) && ((REPLACEABLE | CALIBRATED) != 0 || {CROSSTALK, CREEP} != 0)) begin : gen_check
-            sptfra_error_samples_go_one_by_one_where_frames_are_corrected_or_calibrated invalid ();
-        end
-        if ((EXPECTED_STAGES != 0) && (EXPECTED_STAGES != STAGES)) begin : gen_check_stages
-            sptfra_error_the_plan_counts_on_other_stages invalid ();
-        end
-    endgenerate
+    if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
+        sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
+    end
+    if ((SAMPLES != 1) && ((REPLACEABLE | CALIBRATED) != 0 || {CROSSTALK, CREEP} != 0)) begin : gen_check
+        sptfra_error_samples_go_one_by_one_where_frames_are_corrected_or_calibrated invalid ();
+    end
+    if ((EXPECTED_STAGES != 0) && (EXPECTED_STAGES != STAGES)) begin : gen_check_stages
+        sptfra_error_the_plan_counts_on_other_stages invalid ();
+    end
 
     // ---- Frames, one at a time in the pipeline
     wire accept, opens, in_frame, under_way, out_valid, out_bad_length, bank_free, replace_busy, writer_busy;
@@ -193,112 +191,108 @@ module sptfra_bz #(
     localparam [63:0] DIGITS = "76543210"; // 0 in the lowest bits
     genvar sample;
 
-    generate
-        for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_samples
-            wire signed [26:0] fixed;
+    for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_samples
+        wire signed [26:0] fixed;
 
-            assign read[27*sample +: 27] = fixed;
+        assign read[27*sample +: 27] = fixed;
 
-            sptfra_samples #(
-                .TAXELS       (BEATS),
-                .SAMPLE       (SAMPLE),
-                .NUMBER_SHIFT (NUMBER_SHIFT),
-                .NUMBER_BOUND (NUMBER_BOUND),
-                .COUNTS       (COUNTS),
-                .CALIBRATED   (CALIBRATED),
-                .PER_TAXEL    (PER_TAXEL),
-                .EXPONENT     (EXPONENT),
-                .GAIN         (GAIN),
-                .OFFSET_BITS  (OFFSET_BITS),
-                .COUNT_SHIFT  (COUNT_SHIFT),
-                .FULL_SCALE   (FULL_SCALE),
-                .CURVE_LEVELS (CURVE_LEVELS),
-                .CURVE_KNOTS  (CURVE_KNOTS),
-                .CURVE_LAST   (CURVE_LAST),
-                .STRESS_BOUND (STRESS_BOUND),
-                .ROM_DIR      (ROM_DIR),
-                .ROM_NAME     (ROM_NAME),
-                .TAXEL_NAME   ((ROM_NAME == "") ? "" : {ROM_NAME, "_sample", DIGITS[8*sample +: 8]})
-            ) samples (
-                .clock          (clock),
-                .reset          (reset),
-                .sample         (s_tdata[SAMPLE_BITS*sample +: SAMPLE_BITS]),
-                .sample_taken   (takes[0]),
-                .sample_ends    (ends[0]),
-                .value_taken    (takes[VALUE_STAGES]),
-                .value_ends     (ends[VALUE_STAGES]),
-                .exponent_taxel (exponent_taxels[BEAT_WIDTH*sample +: BEAT_WIDTH]),
-                .gain_taxel     (gain_taxels[BEAT_WIDTH*sample +: BEAT_WIDTH]),
-                .bank_constants (constants),
-                .bank_curve     (curve),
-                .segment        (segment[LEVELS*sample +: LEVELS]),
-                .bank_line      (line),
-                .stress         (fixed),
-                .saturated      (read_saturated[sample]),
-                .not_finite     (read_not_finite[sample])
-            );
-        end
-    endgenerate
+        sptfra_samples #(
+            .TAXELS       (BEATS),
+            .SAMPLE       (SAMPLE),
+            .NUMBER_SHIFT (NUMBER_SHIFT),
+            .NUMBER_BOUND (NUMBER_BOUND),
+            .COUNTS       (COUNTS),
+            .CALIBRATED   (CALIBRATED),
+            .PER_TAXEL    (PER_TAXEL),
+            .EXPONENT     (EXPONENT),
+            .GAIN         (GAIN),
+            .OFFSET_BITS  (OFFSET_BITS),
+            .COUNT_SHIFT  (COUNT_SHIFT),
+            .FULL_SCALE   (FULL_SCALE),
+            .CURVE_LEVELS (CURVE_LEVELS),
+            .CURVE_KNOTS  (CURVE_KNOTS),
+            .CURVE_LAST   (CURVE_LAST),
+            .STRESS_BOUND (STRESS_BOUND),
+            .ROM_DIR      (ROM_DIR),
+            .ROM_NAME     (ROM_NAME),
+            .TAXEL_NAME   ((ROM_NAME == "") ? "" : {ROM_NAME, "_sample", DIGITS[8*sample +: 8]})
+        ) samples (
+            .clock          (clock),
+            .reset          (reset),
+            .sample         (s_tdata[SAMPLE_BITS*sample +: SAMPLE_BITS]),
+            .sample_taken   (takes[0]),
+            .sample_ends    (ends[0]),
+            .value_taken    (takes[VALUE_STAGES]),
+            .value_ends     (ends[VALUE_STAGES]),
+            .exponent_taxel (exponent_taxels[BEAT_WIDTH*sample +: BEAT_WIDTH]),
+            .gain_taxel     (gain_taxels[BEAT_WIDTH*sample +: BEAT_WIDTH]),
+            .bank_constants (constants),
+            .bank_curve     (curve),
+            .segment        (segment[LEVELS*sample +: LEVELS]),
+            .bank_line      (line),
+            .stress         (fixed),
+            .saturated      (read_saturated[sample]),
+            .not_finite     (read_not_finite[sample])
+        );
+    end
 
     // ---- A calibration in RAM
     wire [34*PLACES+8:0] map;
 
-    generate
-        if (CALIBRATED != 0) begin : gen_calibration
-            wire [3:0] replaced;
+    if (CALIBRATED != 0) begin : gen_calibration
+        wire [3:0] replaced;
 
-            assign frame_calibration = {active_calibration[58:0], active_calibration[66:59], replaced};
+        assign frame_calibration = {active_calibration[58:0], active_calibration[66:59], replaced};
 
-            sptfra_banks #(
-                .TAXELS           (TAXELS),
-                .OFFSET_BITS      (OFFSET_BITS),
-                .REPLACEABLE      ((MAPPED != 0) ? REPLACEABLE : 0),
-                .REPLACED_COUNT   (REPLACED_COUNT),
-                .REPLACED_SHIFT   (REPLACED_SHIFT),
-                .REPLACED_TAXELS  (REPLACED_TAXELS[16*((MAPPED != 0) ? PLACES : 1)-1:0]),
-                .CURVE_LEVELS     (CURVE_LEVELS),
-                .CURVE_COUNT      (CURVE_COUNT),
-                .CURVE_KNOTS      (CURVE_KNOTS),
-                .CURVE_LAST       (CURVE_LAST),
-                .CURVE_LAST_VALUE (CURVE_LAST_VALUE),
-                .ROM_DIR          (ROM_DIR),
-                .ROM_NAME         (ROM_NAME)
-            ) banks (
-                .clock          (clock),
-                .reset          (reset),
-                .command        (bank_command),
-                .words          (bank_words),
-                .tare_command   (tare_command),
-                .tare_result    (tare_result),
-                .most_spread    (active_calibration[26:0]),
-                .active         (active),
-                .active_count   (replaced),
-                .opens          (opens),
-                .exponent_bank  ((CURVE_LEVELS == 0) ? bank : bank_held),
-                .exponent_taxel (exponent_taxels[TAXEL_WIDTH-1:0]),
-                .bank           (bank_held),
-                .gain_taxel     (gain_taxels[TAXEL_WIDTH-1:0]),
-                .constants      (constants),
-                .taxel_ahead    (taxel_ahead),
-                .map            (map),
-                .curve          (curve),
-                .segment        (segment[LEVELS-1:0]),
-                .line           (line),
-                .read_valid     (out_valid),
-                .read_last      (ends[STAGES]),
-                .read_bad       (read_saturated[0] || read_not_finite[0] || !takes[STAGES]
-                    || (ends[STAGES] && out_bad_length)),
-                .read           (read[26:0])
-            );
-        end else begin : gen_constant
-            assign frame_calibration = 71'd0;
-            assign bank_words = 1'b0;
-            assign tare_result = 30'd0;
-            assign {constants, curve, line, map} = {(OFFSET_BITS+27*(1<<LEVELS)+34*PLACES+176){1'b0}};
-            wire _unused_calibration = &{1'b0, active_calibration, bank_command, tare_command, segment, CURVE_COUNT,
-                CURVE_LAST_VALUE, exponent_taxels, gain_taxels, bank, out_valid};
-        end
-    endgenerate
+        sptfra_banks #(
+            .TAXELS           (TAXELS),
+            .OFFSET_BITS      (OFFSET_BITS),
+            .REPLACEABLE      ((MAPPED != 0) ? REPLACEABLE : 0),
+            .REPLACED_COUNT   (REPLACED_COUNT),
+            .REPLACED_SHIFT   (REPLACED_SHIFT),
+            .REPLACED_TAXELS  (REPLACED_TAXELS[16*((MAPPED != 0) ? PLACES : 1)-1:0]),
+            .CURVE_LEVELS     (CURVE_LEVELS),
+            .CURVE_COUNT      (CURVE_COUNT),
+            .CURVE_KNOTS      (CURVE_KNOTS),
+            .CURVE_LAST       (CURVE_LAST),
+            .CURVE_LAST_VALUE (CURVE_LAST_VALUE),
+            .ROM_DIR          (ROM_DIR),
+            .ROM_NAME         (ROM_NAME)
+        ) banks (
+            .clock          (clock),
+            .reset          (reset),
+            .command        (bank_command),
+            .words          (bank_words),
+            .tare_command   (tare_command),
+            .tare_result    (tare_result),
+            .most_spread    (active_calibration[26:0]),
+            .active         (active),
+            .active_count   (replaced),
+            .opens          (opens),
+            .exponent_bank  ((CURVE_LEVELS == 0) ? bank : bank_held),
+            .exponent_taxel (exponent_taxels[TAXEL_WIDTH-1:0]),
+            .bank           (bank_held),
+            .gain_taxel     (gain_taxels[TAXEL_WIDTH-1:0]),
+            .constants      (constants),
+            .taxel_ahead    (taxel_ahead),
+            .map            (map),
+            .curve          (curve),
+            .segment        (segment[LEVELS-1:0]),
+            .line           (line),
+            .read_valid     (out_valid),
+            .read_last      (ends[STAGES]),
+            .read_bad       (read_saturated[0] || read_not_finite[0] || !takes[STAGES]
+                || (ends[STAGES] && out_bad_length)),
+            .read           (read[26:0])
+        );
+    end else begin : gen_constant
+        assign frame_calibration = 71'd0;
+        assign bank_words = 1'b0;
+        assign tare_result = 30'd0;
+        assign {constants, curve, line, map} = {(OFFSET_BITS+27*(1<<LEVELS)+34*PLACES+176){1'b0}};
+        wire _unused_calibration = &{1'b0, active_calibration, bank_command, tare_command, segment, CURVE_COUNT,
+            CURVE_LAST_VALUE, exponent_taxels, gain_taxels, bank, out_valid};
+    end
 
     // ---- Stresses to the lanes and to CeAn
     sptfra_frame_writer #(

@@ -52,49 +52,47 @@ module sptfra_counts #(
     wire signed [47:0] rounded;
     wire [OFFSET_BITS-1:0] offset;
 
-    generate
-        if (SHIFTS != 0) begin : gen_shifts
-            localparam [31:0] SHIFT_WIDE = SHIFT;
-            localparam signed [11:0] MOST = 12'sd47;
-            wire signed [11:0] drop = $signed(SHIFT_WIDE[11:0]) - $signed({{2{exponent_1[9]}}, exponent_1});
-            reg [5:0] drop_2;
-            reg [5:0] drop_3;
-            reg [2:0] drop_4;
-            // Twice what they are, to be rounded
-            reg signed [48:0] product_3;
-            reg signed [48:0] coarse_4;
-            reg signed [48:0] fine_5;
-            wire signed [48:0] half = fine_5 + 49'sd1;
-            reg [4*OFFSET_BITS-1:0] offsets; // of stages 5 to 2
+    if (SHIFTS != 0) begin : gen_shifts
+        localparam [31:0] SHIFT_WIDE = SHIFT;
+        localparam signed [11:0] MOST = 12'sd47;
+        wire signed [11:0] drop = $signed(SHIFT_WIDE[11:0]) - $signed({{2{exponent_1[9]}}, exponent_1});
+        reg [5:0] drop_2;
+        reg [5:0] drop_3;
+        reg [2:0] drop_4;
+        // Twice what they are, to be rounded
+        reg signed [48:0] product_3;
+        reg signed [48:0] coarse_4;
+        reg signed [48:0] fine_5;
+        wire signed [48:0] half = fine_5 + 49'sd1;
+        reg [4*OFFSET_BITS-1:0] offsets; // of stages 5 to 2
 
-            assign rounded = half[48:1];
-            assign offset = offsets[4*OFFSET_BITS-1 -: OFFSET_BITS];
+        assign rounded = half[48:1];
+        assign offset = offsets[4*OFFSET_BITS-1 -: OFFSET_BITS];
 
-            always @(posedge clock) begin
-                drop_2 <= drop[11] ? 6'd0 : (drop > MOST) ? MOST[5:0] : drop[5:0];
-                drop_3 <= drop_2;
-                product_3 <= {product_2, 1'b0};
-                coarse_4 <= product_3 >>> {drop_3[5:3], 3'd0};
-                drop_4 <= drop_3[2:0];
-                fine_5 <= coarse_4 >>> drop_4;
-                offsets <= {offsets[3*OFFSET_BITS-1:0], offset_1};
-            end
-
-            wire _unused = &{1'b0, half[0], SHIFT_WIDE, drop};
-        end else begin : gen_shift
-            localparam signed [47:0] HALF = (48'sd1 <<< SHIFT) >>> 1;
-            reg [OFFSET_BITS-1:0] offset_2;
-
-            assign rounded = (product_2 + HALF) >>> SHIFT;
-            assign offset = offset_2;
-
-            always @(posedge clock) begin
-                offset_2 <= offset_1;
-            end
-
-            wire _unused = &{1'b0, exponent_1};
+        always @(posedge clock) begin
+            drop_2 <= drop[11] ? 6'd0 : (drop > MOST) ? MOST[5:0] : drop[5:0];
+            drop_3 <= drop_2;
+            product_3 <= {product_2, 1'b0};
+            coarse_4 <= product_3 >>> {drop_3[5:3], 3'd0};
+            drop_4 <= drop_3[2:0];
+            fine_5 <= coarse_4 >>> drop_4;
+            offsets <= {offsets[3*OFFSET_BITS-1:0], offset_1};
         end
-    endgenerate
+
+        wire _unused = &{1'b0, half[0], SHIFT_WIDE, drop};
+    end else begin : gen_shift
+        localparam signed [47:0] HALF = (48'sd1 <<< SHIFT) >>> 1;
+        reg [OFFSET_BITS-1:0] offset_2;
+
+        assign rounded = (product_2 + HALF) >>> SHIFT;
+        assign offset = offset_2;
+
+        always @(posedge clock) begin
+            offset_2 <= offset_1;
+        end
+
+        wire _unused = &{1'b0, exponent_1};
+    end
 
     // ---- Sum, clipping
     reg signed [47:0] sum;

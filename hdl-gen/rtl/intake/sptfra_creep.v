@@ -42,11 +42,9 @@ module sptfra_creep #(
     localparam [CREEP_BITS-1:0] HALF = {{27{1'b0}}, 1'b1, {(FRACTION-1){1'b0}}}; // of a step: rounds what is cut
     localparam signed [27:0] MOST = {STRESS_BOUND[26], STRESS_BOUND};
 
-    generate
-        if (SHARE[22:17] <= FRACTION) begin : gen_check_share
-            sptfra_error_the_share_has_18_fraction_bits_and_more invalid ();
-        end
-    endgenerate
+    if (SHARE[22:17] <= FRACTION) begin : gen_check_share
+        sptfra_error_the_share_has_18_fraction_bits_and_more invalid ();
+    end
 
     // ---- Of the frame
     reg [TAXEL_WIDTH-1:0] place; // of the reading that comes

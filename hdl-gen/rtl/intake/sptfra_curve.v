@@ -46,25 +46,23 @@ module sptfra_curve #(
         number_in <= (number < first) ? first : (number > last) ? last : number;
     end
 
-    generate
-        for (level = 0; level < LEVELS; level = level + 1) begin : gen_levels
-            localparam [LEVELS-1:0] BIT = 1 << (LEVELS - 1 - level);
-            reg signed [26:0] held_number;
-            reg [LEVELS-1:0] held_segment;
-            wire signed [26:0] here = $signed(numbers[27*level +: 27]);
-            wire [LEVELS-1:0] lower = segments[LEVELS*level +: LEVELS];
-            wire [LEVELS-1:0] upper = lower | BIT;
-            wire signed [26:0] knot = $signed(knots[27*upper +: 27]);
+    for (level = 0; level < LEVELS; level = level + 1) begin : gen_levels
+        localparam [LEVELS-1:0] BIT = 1 << (LEVELS - 1 - level);
+        reg signed [26:0] held_number;
+        reg [LEVELS-1:0] held_segment;
+        wire signed [26:0] here = $signed(numbers[27*level +: 27]);
+        wire [LEVELS-1:0] lower = segments[LEVELS*level +: LEVELS];
+        wire [LEVELS-1:0] upper = lower | BIT;
+        wire signed [26:0] knot = $signed(knots[27*upper +: 27]);
 
-            assign numbers[27*(level+1) +: 27] = held_number;
-            assign segments[LEVELS*(level+1) +: LEVELS] = held_segment;
+        assign numbers[27*(level+1) +: 27] = held_number;
+        assign segments[LEVELS*(level+1) +: LEVELS] = held_segment;
 
-            always @(posedge clock) begin
-                held_number <= here;
-                held_segment <= (({{(7-LEVELS){1'b0}}, upper} < count) && (here >= knot)) ? upper : lower;
-            end
+        always @(posedge clock) begin
+            held_number <= here;
+            held_segment <= (({{(7-LEVELS){1'b0}}, upper} < count) && (here >= knot)) ? upper : lower;
         end
-    endgenerate
+    end
 
     // ---- Its line: names end in the cycles since the segment is known
     wire signed [26:0] from_1;

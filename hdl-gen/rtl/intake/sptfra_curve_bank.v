@@ -168,30 +168,28 @@ module sptfra_curve_bank #(
 
     genvar index;
 
-    generate
-        for (index = 0; index < 4; index = index + 1) begin : gen_fields
-            localparam WIDTH = (index < 2) ? 27 : (index == 2) ? 18 : 6;
-            localparam PLACE = (index == 0) ? 51 : (index == 1) ? 24 : (index == 2) ? 6 : 0; // in a line
-            localparam [8*6-1:0] NAME = (index == 0) ? "firsts" : (index == 1) ? "values"
-                : (index == 2) ? "slopes" : "shifts";
+    for (index = 0; index < 4; index = index + 1) begin : gen_fields
+        localparam WIDTH = (index < 2) ? 27 : (index == 2) ? 18 : 6;
+        localparam PLACE = (index == 0) ? 51 : (index == 1) ? 24 : (index == 2) ? 6 : 0; // in a line
+        localparam [8*6-1:0] NAME = (index == 0) ? "firsts" : (index == 1) ? "values"
+            : (index == 2) ? "slopes" : "shifts";
 
-            sptfra_bank #(
-                .WIDTH         (WIDTH),
-                .ADDRESS_WIDTH (LEVELS + 1),
-                .ROM_DIR       (ROM_DIR),
-                .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_curve_", NAME, ".mem"})
-            ) field (
-                .clock        (clock),
-                .write_enable (copy_writes || (writes && of_segment && (kind == index))),
-                .address      (address),
-                .write_data   (copy_writes ? line[PLACE +: WIDTH] : data[WIDTH-1:0]),
-                .data         (line[PLACE +: WIDTH]),
-                .read_enable  (1'b1),
-                .read_address ({read_bank, read_segment}),
-                .read_data    (read_line[PLACE +: WIDTH])
-            );
-        end
-    endgenerate
+        sptfra_bank #(
+            .WIDTH         (WIDTH),
+            .ADDRESS_WIDTH (LEVELS + 1),
+            .ROM_DIR       (ROM_DIR),
+            .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_curve_", NAME, ".mem"})
+        ) field (
+            .clock        (clock),
+            .write_enable (copy_writes || (writes && of_segment && (kind == index))),
+            .address      (address),
+            .write_data   (copy_writes ? line[PLACE +: WIDTH] : data[WIDTH-1:0]),
+            .data         (line[PLACE +: WIDTH]),
+            .read_enable  (1'b1),
+            .read_address ({read_bank, read_segment}),
+            .read_data    (read_line[PLACE +: WIDTH])
+        );
+    end
 
     // ---- The walk of a commit: with a segment's last word its check begins
     wire [27*SEGMENTS-1:0] knots_here = bank ? knots_1 : knots_0;

@@ -141,27 +141,25 @@ module sptfra_dead_bank #(
 
     localparam [63:0] DIGITS = "76543210"; // 0 in the lowest bits
 
-    generate
-        for (index = 0; index < REPLACEABLE; index = index + 1) begin : gen_places
-            localparam [31:0] PLACE = index;
+    for (index = 0; index < REPLACEABLE; index = index + 1) begin : gen_places
+        localparam [31:0] PLACE = index;
 
-            sptfra_bank #(
-                .WIDTH         (18),
-                .ADDRESS_WIDTH (TAXEL_WIDTH + 1),
-                .ROM_DIR       (ROM_DIR),
-                .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_weights", DIGITS[8*index +: 8], ".mem"})
-            ) of_place (
-                .clock        (clock),
-                .write_enable (copy_writes || (writes && of_weight && (slot == PLACE[2:0]))),
-                .address      ({bank, taxel[TAXEL_WIDTH-1:0]}),
-                .write_data   (copies ? copied[18*index +: 18] : data[17:0]),
-                .data         (weights[18*index +: 18]),
-                .read_enable  (read_enable),
-                .read_address ({read_bank, read_taxel}),
-                .read_data    (read_weights[18*index +: 18])
-            );
-        end
-    endgenerate
+        sptfra_bank #(
+            .WIDTH         (18),
+            .ADDRESS_WIDTH (TAXEL_WIDTH + 1),
+            .ROM_DIR       (ROM_DIR),
+            .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_weights", DIGITS[8*index +: 8], ".mem"})
+        ) of_place (
+            .clock        (clock),
+            .write_enable (copy_writes || (writes && of_weight && (slot == PLACE[2:0]))),
+            .address      ({bank, taxel[TAXEL_WIDTH-1:0]}),
+            .write_data   (copies ? copied[18*index +: 18] : data[17:0]),
+            .data         (weights[18*index +: 18]),
+            .read_enable  (read_enable),
+            .read_address ({read_bank, read_taxel}),
+            .read_data    (read_weights[18*index +: 18])
+        );
+    end
 
     // ---- The walk of a commit: a word is there when it is taken
     reg contradicts;
@@ -172,22 +170,20 @@ module sptfra_dead_bank #(
     wire [REPLACEABLE-1:0] is_this;
     reg is_dead_1;
 
-    generate
-        for (index = 0; index < REPLACEABLE; index = index + 1) begin : gen_walk
-            localparam [31:0] PLACE = index;
+    for (index = 0; index < REPLACEABLE; index = index + 1) begin : gen_walk
+        localparam [31:0] PLACE = index;
 
-            assign is_this[index] = (PLACE[3:0] < head[3:0]) && (numbers[16*index +: 16] == taxel);
+        assign is_this[index] = (PLACE[3:0] < head[3:0]) && (numbers[16*index +: 16] == taxel);
 
-            always @(posedge clock) begin
-                if (walk_begins) begin
-                    magnitudes[22*index +: 22] <= 22'd0;
-                end else if (walk_takes && of_weight) begin
-                    magnitudes[22*index +: 22] <= (index == REPLACEABLE - 1) ? magnitude_sum
-                        : magnitudes[22*((index + 1) % REPLACEABLE) +: 22];
-                end
+        always @(posedge clock) begin
+            if (walk_begins) begin
+                magnitudes[22*index +: 22] <= 22'd0;
+            end else if (walk_takes && of_weight) begin
+                magnitudes[22*index +: 22] <= (index == REPLACEABLE - 1) ? magnitude_sum
+                    : magnitudes[22*((index + 1) % REPLACEABLE) +: 22];
             end
         end
-    endgenerate
+    end
 
     always @(posedge clock) begin
         is_dead_1 <= (is_this != {REPLACEABLE{1'b0}});

@@ -79,11 +79,9 @@ module sptfra_fold #(
     localparam [31:0] LOWER_BEAT_WIDE = LOWER_BEAT;
     localparam [INDEX_WIDTH-1:0] ONE = {{(INDEX_WIDTH-1){1'b0}}, 1'b1};
 
-    generate
-        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
-            sptfra_error_channels_must_be_1_or_4 invalid ();
-        end
-    endgenerate
+    if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
+        sptfra_error_channels_must_be_1_or_4 invalid ();
+    end
 
     // ---- The orbit that is read, and its taxels
     reg done;
@@ -136,79 +134,75 @@ module sptfra_fold #(
     wire [CHANNELS*STRESS_BITS-1:0] shifted;
     genvar image;
 
-    generate
-        for (image = 0; image < CHANNELS; image = image + 1) begin : gen_images
-            localparam UPPER = ((image == 1) || (image == 2)) ? 1 : 0;
-            wire [CANDIDATES*STRESS_BITS-1:0] both_2;
-            wire [STRESS_BITS-1:0] kept_2
-                = averaged ? both_2[(CANDIDATES-1)*STRESS_BITS +: STRESS_BITS] : both_2[STRESS_BITS-1:0];
+    for (image = 0; image < CHANNELS; image = image + 1) begin : gen_images
+        localparam UPPER = ((image == 1) || (image == 2)) ? 1 : 0;
+        wire [CANDIDATES*STRESS_BITS-1:0] both_2;
+        wire [STRESS_BITS-1:0] kept_2
+            = averaged ? both_2[(CANDIDATES-1)*STRESS_BITS +: STRESS_BITS] : both_2[STRESS_BITS-1:0];
 
-            sptfra_frame_memory #(
-                .SAMPLES (SAMPLES),
-                .BEATS   (BEATS),
-                .FIRST   ((UPPER != 0) ? 0 : LOWER_BEAT),
-                .KEPT    ((UPPER != 0) ? UPPER_BEATS : BEATS - LOWER_BEAT),
-                .WIDTH   (CANDIDATES * STRESS_BITS)
-            ) frame (
-                .clock          (clock),
-                .write_enable   (beat_valid),
-                .write_beat     (beat),
-                .write_stresses (stresses),
-                .read_enable    (advance),
-                .taxel          (taxels[INDEX_WIDTH*image +: INDEX_WIDTH]),
-                .stress         (both_2)
-            );
+        sptfra_frame_memory #(
+            .SAMPLES (SAMPLES),
+            .BEATS   (BEATS),
+            .FIRST   ((UPPER != 0) ? 0 : LOWER_BEAT),
+            .KEPT    ((UPPER != 0) ? UPPER_BEATS : BEATS - LOWER_BEAT),
+            .WIDTH   (CANDIDATES * STRESS_BITS)
+        ) frame (
+            .clock          (clock),
+            .write_enable   (beat_valid),
+            .write_beat     (beat),
+            .write_stresses (stresses),
+            .read_enable    (advance),
+            .taxel          (taxels[INDEX_WIDTH*image +: INDEX_WIDTH]),
+            .stress         (both_2)
+        );
 
-            if (SCALED != 0) begin : gen_scale
-                reg [STRESS_BITS-1:0] octets_3;
-                reg [STRESS_BITS-1:0] exact_4;
+        if (SCALED != 0) begin : gen_scale
+            reg [STRESS_BITS-1:0] octets_3;
+            reg [STRESS_BITS-1:0] exact_4;
 
-                assign shifted[STRESS_BITS*image +: STRESS_BITS] = exact_4;
+            assign shifted[STRESS_BITS*image +: STRESS_BITS] = exact_4;
 
-                always @(posedge clock) begin
-                    if (advance) begin
-                        octets_3 <= kept_2 << {exponent[4:3], 3'd0};
-                        exact_4 <= octets_3 << exponent[2:0];
-                    end
+            always @(posedge clock) begin
+                if (advance) begin
+                    octets_3 <= kept_2 << {exponent[4:3], 3'd0};
+                    exact_4 <= octets_3 << exponent[2:0];
                 end
-            end else begin : gen_as_read
-                assign shifted[STRESS_BITS*image +: STRESS_BITS] = kept_2;
             end
+        end else begin : gen_as_read
+            assign shifted[STRESS_BITS*image +: STRESS_BITS] = kept_2;
         end
-        if (SCALED == 0) begin : gen_unscaled
-            wire _unused_exponent = &{1'b0, exponent};
-        end
-    endgenerate
+    end
+    if (SCALED == 0) begin : gen_unscaled
+        wire _unused_exponent = &{1'b0, exponent};
+    end
 
     // ---- Mirror in x, mirror in y: two cycles. On a centre line both are the same taxel
     wire [CHANNELS*SUM_BITS-1:0] sums;
 
-    generate
-        if (CHANNELS == 4) begin : gen_components
-            // Half a step of the result is added, for the rounding
-            sptfra_butterfly #(
-                .WIDTH (STRESS_BITS),
-                .HALF  (DROPPED)
-            ) butterfly (
-                .clock  (clock),
-                .enable (advance),
-                .values ({shifted[0 +: STRESS_BITS], shifted[STRESS_BITS +: 3*STRESS_BITS]}),
-                .sums   (sums)
-            );
-        end else begin : gen_taxels
-            reg [2*SUM_BITS-1:0] held;
+    if (CHANNELS == 4) begin : gen_components
+        // Half a step of the result is added, for the rounding
+        sptfra_butterfly #(
+            .WIDTH (STRESS_BITS),
+            .HALF  (DROPPED)
+        ) butterfly (
+            .clock  (clock),
+            .enable (advance),
+            .values ({shifted[0 +: STRESS_BITS], shifted[STRESS_BITS +: 3*STRESS_BITS]}),
+            .sums   (sums)
+        );
+    end else begin : gen_taxels
+        reg [2*SUM_BITS-1:0] held;
 
-            assign sums = held[SUM_BITS +: SUM_BITS];
+        assign sums = held[SUM_BITS +: SUM_BITS];
 
-            always @(posedge clock) begin
-                if (advance) begin
-                    held <= {held[SUM_BITS-1:0], shifted};
-                end
+        always @(posedge clock) begin
+            if (advance) begin
+                held <= {held[SUM_BITS-1:0], shifted};
             end
-
-            wire _unused_images = &{1'b0, taxels};
         end
-    endgenerate
+
+        wire _unused_images = &{1'b0, taxels};
+    end
 
     // ---- Write
     reg [READ_TO_WRITTEN:1] valid;
@@ -240,15 +234,13 @@ module sptfra_fold #(
         end
     end
 
-    generate
-        for (parity = 0; parity < CHANNELS; parity = parity + 1) begin : gen_results
-            for (place = 0; place < DATA_BITS; place = place + 1) begin : gen_bits
-                localparam OF_SUM = (place + DROPPED < SUM_BITS) ? place + DROPPED : SUM_BITS - 1;
+    for (parity = 0; parity < CHANNELS; parity = parity + 1) begin : gen_results
+        for (place = 0; place < DATA_BITS; place = place + 1) begin : gen_bits
+            localparam OF_SUM = (place + DROPPED < SUM_BITS) ? place + DROPPED : SUM_BITS - 1;
 
-                assign write_data[DATA_BITS*parity+place] = sums[SUM_BITS*parity+OF_SUM];
-            end
+            assign write_data[DATA_BITS*parity+place] = sums[SUM_BITS*parity+OF_SUM];
         end
-    endgenerate
+    end
 
     sptfra_check_latency #(
         .CYCLES (READ_TO_WRITTEN)

@@ -98,96 +98,90 @@ module sptfra_frame_context #(
     end
 
     // ---- Calibration
-    generate
-        if (CALIBRATED != 0) begin : gen_calibration
-            wire [58:0] of_cean;
-            reg [58:0] thresholds;
+    if (CALIBRATED != 0) begin : gen_calibration
+        wire [58:0] of_cean;
+        reg [58:0] thresholds;
 
-            assign {contact, noise} = thresholds;
+        assign {contact, noise} = thresholds;
 
-            always @(posedge clock) begin
-                thresholds <= of_cean;
-            end
-
-            sptfra_context_field #(
-                .WIDTH (59)
-            ) for_cean (
-                .clock      (clock),
-                .reset      (reset),
-                .write      (calibrated),
-                .write_data ({in_contact, in_noise}),
-                .take       (cean_take),
-                .oldest     (of_cean)
-            );
-
-            sptfra_context_field #(
-                .WIDTH (12)
-            ) for_output (
-                .clock      (clock),
-                .reset      (reset),
-                .write      (calibrated),
-                .write_data ({in_version, in_replaced}),
-                .take       (take),
-                .oldest     ({version, replaced})
-            );
-        end else begin : gen_constant
-            assign contact = 32'd0;
-            assign noise = 27'd0;
-            assign version = 8'd0;
-            assign replaced = 4'd0;
-            wire _unused_calibration = &{1'b0, calibrated, in_contact, in_noise, in_version, in_replaced, cean_take};
+        always @(posedge clock) begin
+            thresholds <= of_cean;
         end
-    endgenerate
+
+        sptfra_context_field #(
+            .WIDTH (59)
+        ) for_cean (
+            .clock      (clock),
+            .reset      (reset),
+            .write      (calibrated),
+            .write_data ({in_contact, in_noise}),
+            .take       (cean_take),
+            .oldest     (of_cean)
+        );
+
+        sptfra_context_field #(
+            .WIDTH (12)
+        ) for_output (
+            .clock      (clock),
+            .reset      (reset),
+            .write      (calibrated),
+            .write_data ({in_version, in_replaced}),
+            .take       (take),
+            .oldest     ({version, replaced})
+        );
+    end else begin : gen_constant
+        assign contact = 32'd0;
+        assign noise = 27'd0;
+        assign version = 8'd0;
+        assign replaced = 4'd0;
+        wire _unused_calibration = &{1'b0, calibrated, in_contact, in_noise, in_version, in_replaced, cean_take};
+    end
 
     // ---- Scale
-    generate
-        if (SCALED != 0) begin : gen_scale
-            sptfra_context_field #(
-                .WIDTH (5)
-            ) for_direction (
-                .clock      (clock),
-                .reset      (reset),
-                .write      (scaled),
-                .write_data (in_exponent),
-                .take       (direction_take),
-                .oldest     (direction_exponent)
-            );
+    if (SCALED != 0) begin : gen_scale
+        sptfra_context_field #(
+            .WIDTH (5)
+        ) for_direction (
+            .clock      (clock),
+            .reset      (reset),
+            .write      (scaled),
+            .write_data (in_exponent),
+            .take       (direction_take),
+            .oldest     (direction_exponent)
+        );
 
-            sptfra_context_field #(
-                .WIDTH (5)
-            ) for_output (
-                .clock      (clock),
-                .reset      (reset),
-                .write      (scaled),
-                .write_data (in_exponent),
-                .take       (take),
-                .oldest     (exponent)
-            );
-        end else begin : gen_unscaled
-            assign direction_exponent = 5'd0;
-            assign exponent = 5'd0;
-            wire _unused_scale = &{1'b0, scaled, in_exponent, direction_take};
-        end
-    endgenerate
+        sptfra_context_field #(
+            .WIDTH (5)
+        ) for_output (
+            .clock      (clock),
+            .reset      (reset),
+            .write      (scaled),
+            .write_data (in_exponent),
+            .take       (take),
+            .oldest     (exponent)
+        );
+    end else begin : gen_unscaled
+        assign direction_exponent = 5'd0;
+        assign exponent = 5'd0;
+        wire _unused_scale = &{1'b0, scaled, in_exponent, direction_take};
+    end
 
     // ---- Noise left
-    generate
-        if (AVERAGED != 0) begin : gen_variance
-            sptfra_context_field #(
-                .WIDTH (25)
-            ) for_direction (
-                .clock      (clock),
-                .reset      (reset),
-                .write      (smoothed[25]),
-                .write_data (smoothed[24:0]),
-                .take       (direction_take),
-                .oldest     (direction_variance)
-            );
-        end else begin : gen_frames_alone
-            assign direction_variance = 25'd0;
-            wire _unused_variance = &{1'b0, smoothed, direction_take};
-        end
-    endgenerate
+    if (AVERAGED != 0) begin : gen_variance
+        sptfra_context_field #(
+            .WIDTH (25)
+        ) for_direction (
+            .clock      (clock),
+            .reset      (reset),
+            .write      (smoothed[25]),
+            .write_data (smoothed[24:0]),
+            .take       (direction_take),
+            .oldest     (direction_variance)
+        );
+    end else begin : gen_frames_alone
+        assign direction_variance = 25'd0;
+        wire _unused_variance = &{1'b0, smoothed, direction_take};
+    end
 
     wire _unused_begins = &{1'b0, begins_with};
 

@@ -73,11 +73,9 @@ module sptfra_frame_corrections #(
     wire [SAMPLES-1:0] own_not_finite = in_not_finite & counted;
     genvar sample;
 
-    generate
-        for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_samples
-            assign own_stresses[27*sample +: 27] = counted[sample] ? in_stresses[27*sample +: 27] : 27'd0;
-        end
-    endgenerate
+    for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_samples
+        assign own_stresses[27*sample +: 27] = counted[sample] ? in_stresses[27*sample +: 27] : 27'd0;
+    end
 
     always @(posedge clock) begin
         if (in_takes) begin
@@ -98,105 +96,103 @@ module sptfra_frame_corrections #(
 
     assign busy = crosstalk_busy || creep_busy;
 
-    generate
-        if (REPLACEABLE != 0) begin : gen_replace
-            sptfra_replace #(
-                .TAXELS          (TAXELS),
-                .REPLACEABLE     (REPLACEABLE),
-                .MAPPED          (MAPPED),
-                .REPLACED_COUNT  (REPLACED_COUNT),
-                .REPLACED_SHIFT  (REPLACED_SHIFT),
-                .REPLACED_TAXELS (REPLACED_TAXELS),
-                .STRESS_BOUND    (STRESS_BOUND),
-                .ROM_DIR         (ROM_DIR),
-                .ROM_NAME        (ROM_NAME)
-            ) replace (
-                .clock          (clock),
-                .reset          (reset),
-                .in_takes       (in_takes),
-                .in_ends        (in_ends),
-                .in_bad_length  (in_bad_length),
-                .in_stress      (own_stresses[26:0]),
-                .in_saturated   (own_saturated[0]),
-                .in_not_finite  (own_not_finite[0]),
-                .taxel_ahead    (taxel_ahead),
-                .map            (map),
-                .busy           (replace_busy),
-                .out_valid      (whole_takes),
-                .out_last       (whole_ends),
-                .out_bad_length (whole_bad_length),
-                .out_stress     (whole_stresses[26:0]),
-                .out_saturated  (whole_saturated[0]),
-                .out_not_finite (whole_not_finite[0]),
-                .out_replaced   (whole_replaced)
-            );
-        end else begin : gen_as_read
-            assign {whole_takes, whole_ends, whole_bad_length, whole_replaced, replace_busy}
-                = {in_takes, in_ends, in_bad_length, 2'b00};
-            assign {whole_stresses, whole_saturated, whole_not_finite} = {own_stresses, own_saturated, own_not_finite};
-            wire _unused_map = &{1'b0, REPLACED_COUNT, REPLACED_SHIFT, REPLACED_TAXELS, MAPPED != 0, ROM_DIR != "",
-                ROM_NAME != "", taxel_ahead, map};
-        end
-        if (CROSSTALK != 60'd0) begin : gen_crosstalk
-            sptfra_crosstalk #(
-                .COLUMNS       (COLUMNS),
-                .ROWS          (ROWS),
-                .ROW_FACTOR    (CROSSTALK[53:36]),
-                .COLUMN_FACTOR (CROSSTALK[35:18]),
-                .TOTAL_FACTOR  (CROSSTALK[17:0]),
-                .FRACTION      (CROSSTALK[59:54]),
-                .STRESS_BOUND  (STRESS_BOUND)
-            ) crosstalk (
-                .clock          (clock),
-                .reset          (reset),
-                .in_takes       (whole_takes),
-                .in_ends        (whole_ends),
-                .in_bad_length  (whole_bad_length),
-                .in_stress      (whole_stresses[26:0]),
-                .in_flags       ({whole_saturated[0], whole_not_finite[0], whole_replaced}),
-                .busy           (crosstalk_busy),
-                .out_takes      (apart_takes),
-                .out_ends       (apart_ends),
-                .out_bad_length (apart_bad_length),
-                .out_stress     (apart_stresses[26:0]),
-                .out_flags      ({apart_saturated[0], apart_not_finite[0], apart_replaced})
-            );
-        end else begin : gen_no_crosstalk
-            assign {apart_takes, apart_ends, apart_bad_length, apart_replaced, crosstalk_busy}
-                = {whole_takes, whole_ends, whole_bad_length, whole_replaced, 1'b0};
-            assign {apart_stresses, apart_saturated, apart_not_finite}
-                = {whole_stresses, whole_saturated, whole_not_finite};
-        end
-        if (CREEP != 46'd0) begin : gen_creep
-            sptfra_creep #(
-                .TAXELS       (TAXELS),
-                .STRENGTH     (CREEP[45:23]),
-                .SHARE        (CREEP[22:0]),
-                .STRESS_BOUND (STRESS_BOUND)
-            ) creep (
-                .clock          (clock),
-                .reset          (reset),
-                .in_takes       (apart_takes),
-                .in_ends        (apart_ends),
-                .in_bad_length  (apart_bad_length),
-                .in_stress      (apart_stresses[26:0]),
-                .in_flags       ({apart_saturated[0], apart_not_finite[0], apart_replaced}),
-                .busy           (creep_busy),
-                .out_takes      (takes),
-                .out_ends       (ends),
-                .out_bad_length (bad_length),
-                .out_stress     (stresses[26:0]),
-                .out_flags      ({saturated[0], not_finite[0], replaced})
-            );
-        end else begin : gen_no_creep
-            assign {takes, ends, bad_length, replaced, creep_busy}
-                = {apart_takes, apart_ends, apart_bad_length, apart_replaced, 1'b0};
-            assign {stresses, saturated, not_finite} = {apart_stresses, apart_saturated, apart_not_finite};
-        end
-        if ((REPLACEABLE == 0) && ({CROSSTALK, CREEP} == 0)) begin : gen_nothing
-            wire _unused_nothing = &{1'b0, STRESS_BOUND};
-        end
-    endgenerate
+    if (REPLACEABLE != 0) begin : gen_replace
+        sptfra_replace #(
+            .TAXELS          (TAXELS),
+            .REPLACEABLE     (REPLACEABLE),
+            .MAPPED          (MAPPED),
+            .REPLACED_COUNT  (REPLACED_COUNT),
+            .REPLACED_SHIFT  (REPLACED_SHIFT),
+            .REPLACED_TAXELS (REPLACED_TAXELS),
+            .STRESS_BOUND    (STRESS_BOUND),
+            .ROM_DIR         (ROM_DIR),
+            .ROM_NAME        (ROM_NAME)
+        ) replace (
+            .clock          (clock),
+            .reset          (reset),
+            .in_takes       (in_takes),
+            .in_ends        (in_ends),
+            .in_bad_length  (in_bad_length),
+            .in_stress      (own_stresses[26:0]),
+            .in_saturated   (own_saturated[0]),
+            .in_not_finite  (own_not_finite[0]),
+            .taxel_ahead    (taxel_ahead),
+            .map            (map),
+            .busy           (replace_busy),
+            .out_valid      (whole_takes),
+            .out_last       (whole_ends),
+            .out_bad_length (whole_bad_length),
+            .out_stress     (whole_stresses[26:0]),
+            .out_saturated  (whole_saturated[0]),
+            .out_not_finite (whole_not_finite[0]),
+            .out_replaced   (whole_replaced)
+        );
+    end else begin : gen_as_read
+        assign {whole_takes, whole_ends, whole_bad_length, whole_replaced, replace_busy}
+            = {in_takes, in_ends, in_bad_length, 2'b00};
+        assign {whole_stresses, whole_saturated, whole_not_finite} = {own_stresses, own_saturated, own_not_finite};
+        wire _unused_map = &{1'b0, REPLACED_COUNT, REPLACED_SHIFT, REPLACED_TAXELS, MAPPED != 0, ROM_DIR != "",
+            ROM_NAME != "", taxel_ahead, map};
+    end
+    if (CROSSTALK != 60'd0) begin : gen_crosstalk
+        sptfra_crosstalk #(
+            .COLUMNS       (COLUMNS),
+            .ROWS          (ROWS),
+            .ROW_FACTOR    (CROSSTALK[53:36]),
+            .COLUMN_FACTOR (CROSSTALK[35:18]),
+            .TOTAL_FACTOR  (CROSSTALK[17:0]),
+            .FRACTION      (CROSSTALK[59:54]),
+            .STRESS_BOUND  (STRESS_BOUND)
+        ) crosstalk (
+            .clock          (clock),
+            .reset          (reset),
+            .in_takes       (whole_takes),
+            .in_ends        (whole_ends),
+            .in_bad_length  (whole_bad_length),
+            .in_stress      (whole_stresses[26:0]),
+            .in_flags       ({whole_saturated[0], whole_not_finite[0], whole_replaced}),
+            .busy           (crosstalk_busy),
+            .out_takes      (apart_takes),
+            .out_ends       (apart_ends),
+            .out_bad_length (apart_bad_length),
+            .out_stress     (apart_stresses[26:0]),
+            .out_flags      ({apart_saturated[0], apart_not_finite[0], apart_replaced})
+        );
+    end else begin : gen_no_crosstalk
+        assign {apart_takes, apart_ends, apart_bad_length, apart_replaced, crosstalk_busy}
+            = {whole_takes, whole_ends, whole_bad_length, whole_replaced, 1'b0};
+        assign {apart_stresses, apart_saturated, apart_not_finite}
+            = {whole_stresses, whole_saturated, whole_not_finite};
+    end
+    if (CREEP != 46'd0) begin : gen_creep
+        sptfra_creep #(
+            .TAXELS       (TAXELS),
+            .STRENGTH     (CREEP[45:23]),
+            .SHARE        (CREEP[22:0]),
+            .STRESS_BOUND (STRESS_BOUND)
+        ) creep (
+            .clock          (clock),
+            .reset          (reset),
+            .in_takes       (apart_takes),
+            .in_ends        (apart_ends),
+            .in_bad_length  (apart_bad_length),
+            .in_stress      (apart_stresses[26:0]),
+            .in_flags       ({apart_saturated[0], apart_not_finite[0], apart_replaced}),
+            .busy           (creep_busy),
+            .out_takes      (takes),
+            .out_ends       (ends),
+            .out_bad_length (bad_length),
+            .out_stress     (stresses[26:0]),
+            .out_flags      ({saturated[0], not_finite[0], replaced})
+        );
+    end else begin : gen_no_creep
+        assign {takes, ends, bad_length, replaced, creep_busy}
+            = {apart_takes, apart_ends, apart_bad_length, apart_replaced, 1'b0};
+        assign {stresses, saturated, not_finite} = {apart_stresses, apart_saturated, apart_not_finite};
+    end
+    if ((REPLACEABLE == 0) && ({CROSSTALK, CREEP} == 0)) begin : gen_nothing
+        wire _unused_nothing = &{1'b0, STRESS_BOUND};
+    end
 
 endmodule
 

@@ -71,67 +71,65 @@ module sptfra_frame_scale #(
 
     assign exponent = averaged ? exponents[5*(CANDIDATES-1) +: 5] : exponents[4:0];
 
-    generate
-        for (candidate = 0; candidate < CANDIDATES; candidate = candidate + 1) begin : gen_candidates
-            wire [27*SAMPLES-1:0] magnitudes;
-            wire [2*27-1:0] halves;
-            wire [26:0] largest;
-            reg [26:0] most;
-            wire [5:0] most_bits; // two cycles behind
-            reg [4:0] guess; // brings the leading bit to that of the full scale
-            reg [26:0] guessed;
-            reg [4:0] found;
+    for (candidate = 0; candidate < CANDIDATES; candidate = candidate + 1) begin : gen_candidates
+        wire [27*SAMPLES-1:0] magnitudes;
+        wire [2*27-1:0] halves;
+        wire [26:0] largest;
+        reg [26:0] most;
+        wire [5:0] most_bits; // two cycles behind
+        reg [4:0] guess; // brings the leading bit to that of the full scale
+        reg [26:0] guessed;
+        reg [4:0] found;
 
-            assign exponents[5*candidate +: 5] = found;
+        assign exponents[5*candidate +: 5] = found;
 
-            for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_samples
-                wire [26:0] stress = stresses[27*(SAMPLES*candidate+sample) +: 27];
-                reg [26:0] magnitude;
+        for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_samples
+            wire [26:0] stress = stresses[27*(SAMPLES*candidate+sample) +: 27];
+            reg [26:0] magnitude;
 
-                assign magnitudes[27*sample +: 27] = magnitude;
-
-                always @(posedge clock) begin
-                    magnitude <= stress[26] ? -stress : stress;
-                end
-            end
-
-            sptfra_tree #(
-                .COUNT   (SAMPLES),
-                .WIDTH   (27),
-                .LARGEST (1)
-            ) largest_of_beat (
-                .clock   (clock),
-                .numbers (magnitudes),
-                .halves  (halves),
-                .result  (largest)
-            );
-
-            sptfra_leading_bit #(
-                .WIDTH (32)
-            ) leading_bit (
-                .clock (clock),
-                .value ({5'd0, most}),
-                .bits  (most_bits)
-            );
+            assign magnitudes[27*sample +: 27] = magnitude;
 
             always @(posedge clock) begin
-                if (valid[LEVELS]) begin
-                    most <= (largest > most) ? largest : most;
-                end
-                guess <= BOUND_BITS[4:0] - most_bits[4:0];
-                guessed <= most << guess;
-                if (settles[SETTLES]) begin
-                    // What another frame has left where this one is too short is not this one's to scale
-                    found <= is_bad ? 5'd0 : (guessed > STRESS_BOUND) ? guess - 5'd1 : guess;
-                end
-                if (reset || settles[SETTLES]) begin
-                    most <= 27'd0;
-                end
+                magnitude <= stress[26] ? -stress : stress;
             end
-
-            wire _unused_bits = &{1'b0, most_bits, halves};
         end
-    endgenerate
+
+        sptfra_tree #(
+            .COUNT   (SAMPLES),
+            .WIDTH   (27),
+            .LARGEST (1)
+        ) largest_of_beat (
+            .clock   (clock),
+            .numbers (magnitudes),
+            .halves  (halves),
+            .result  (largest)
+        );
+
+        sptfra_leading_bit #(
+            .WIDTH (32)
+        ) leading_bit (
+            .clock (clock),
+            .value ({5'd0, most}),
+            .bits  (most_bits)
+        );
+
+        always @(posedge clock) begin
+            if (valid[LEVELS]) begin
+                most <= (largest > most) ? largest : most;
+            end
+            guess <= BOUND_BITS[4:0] - most_bits[4:0];
+            guessed <= most << guess;
+            if (settles[SETTLES]) begin
+                // What another frame has left where this one is too short is not this one's to scale
+                found <= is_bad ? 5'd0 : (guessed > STRESS_BOUND) ? guess - 5'd1 : guess;
+            end
+            if (reset || settles[SETTLES]) begin
+                most <= 27'd0;
+            end
+        end
+
+        wire _unused_bits = &{1'b0, most_bits, halves};
+    end
 
     wire _unused = &{1'b0, BOUND_BITS, valid_next, settles_next};
 

@@ -89,14 +89,12 @@ module sptfra_frame_writer #(
     localparam COUNT_WIDTH = $clog2(BEATS + 1);
     localparam STRESS_BITS = (DATA_BITS < 27) ? DATA_BITS : 27;
 
-    generate
-        if ((SAMPLES != 1) && (SAMPLES != 2) && (SAMPLES != 4) && (SAMPLES != 8)) begin : gen_check_samples
-            sptfra_error_samples_of_a_beat_must_be_1_2_4_or_8 invalid ();
-        end
-        if ((DATA_BITS < 16) || (DATA_BITS > ((CHANNELS == 4) ? 35 : 27))) begin : gen_check_data
-            sptfra_error_data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded invalid ();
-        end
-    endgenerate
+    if ((SAMPLES != 1) && (SAMPLES != 2) && (SAMPLES != 4) && (SAMPLES != 8)) begin : gen_check_samples
+        sptfra_error_samples_of_a_beat_must_be_1_2_4_or_8 invalid ();
+    end
+    if ((DATA_BITS < 16) || (DATA_BITS > ((CHANNELS == 4) ? 35 : 27))) begin : gen_check_data
+        sptfra_error_data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded invalid ();
+    end
 
     // ---- Dead taxels, crosstalk, creep
     wire corrections_busy, corrected_takes, corrected_ends, corrected_bad_length, corrected_replaced;
@@ -147,46 +145,44 @@ module sptfra_frame_writer #(
     wire [27*SAMPLES*CANDIDATES-1:0] stresses; // candidate by candidate
     wire [SAMPLES-1:0] saturated, not_finite;
 
-    generate
-        if (SMOOTHING != 0) begin : gen_smoothed
-            sptfra_smoothing #(
-                .TAXELS   (TAXELS),
-                .SAMPLES  (SAMPLES),
-                .FRACTION (SMOOTHING[22:17]),
-                .FACTOR   (SMOOTHING[16:0]),
-                .LARGEST  (SMOOTHING[49:23])
-            ) smoothing_of_frames (
-                .clock          (clock),
-                .reset          (reset),
-                .opens          (frame_opens),
-                .rate           (smoothing),
-                .in_takes       (corrected_takes),
-                .in_ends        (corrected_ends),
-                .in_bad_length  (corrected_bad_length),
-                .in_stresses    (corrected),
-                .in_flags       ({corrected_saturated, corrected_not_finite, corrected_replaced}),
-                .busy           (smoothing_busy),
-                .out_takes      (takes),
-                .out_ends       (ends),
-                .out_bad_length (bad_length_now),
-                .out_stresses   (stresses[27*SAMPLES-1:0]),
-                .out_averages   (stresses[27*SAMPLES*CANDIDATES-1 -: 27*SAMPLES]),
-                .out_flags      ({saturated, not_finite, replaced}),
-                .decided        (settled),
-                .averaged       (averaged),
-                .over           (over),
-                .known          (smoothed[25]),
-                .variance       (smoothed[24:0])
-            );
-        end else begin : gen_as_they_come
-            assign {takes, ends, bad_length_now, replaced}
-                = {corrected_takes, corrected_ends, corrected_bad_length, corrected_replaced};
-            assign {stresses, saturated, not_finite} = {corrected, corrected_saturated, corrected_not_finite};
-            assign {smoothing_busy, settled, averaged} = {1'b0, ended, 1'b0};
-            assign smoothed = 26'd0;
-            wire _unused_smoothing = &{1'b0, smoothing};
-        end
-    endgenerate
+    if (SMOOTHING != 0) begin : gen_smoothed
+        sptfra_smoothing #(
+            .TAXELS   (TAXELS),
+            .SAMPLES  (SAMPLES),
+            .FRACTION (SMOOTHING[22:17]),
+            .FACTOR   (SMOOTHING[16:0]),
+            .LARGEST  (SMOOTHING[49:23])
+        ) smoothing_of_frames (
+            .clock          (clock),
+            .reset          (reset),
+            .opens          (frame_opens),
+            .rate           (smoothing),
+            .in_takes       (corrected_takes),
+            .in_ends        (corrected_ends),
+            .in_bad_length  (corrected_bad_length),
+            .in_stresses    (corrected),
+            .in_flags       ({corrected_saturated, corrected_not_finite, corrected_replaced}),
+            .busy           (smoothing_busy),
+            .out_takes      (takes),
+            .out_ends       (ends),
+            .out_bad_length (bad_length_now),
+            .out_stresses   (stresses[27*SAMPLES-1:0]),
+            .out_averages   (stresses[27*SAMPLES*CANDIDATES-1 -: 27*SAMPLES]),
+            .out_flags      ({saturated, not_finite, replaced}),
+            .decided        (settled),
+            .averaged       (averaged),
+            .over           (over),
+            .known          (smoothed[25]),
+            .variance       (smoothed[24:0])
+        );
+    end else begin : gen_as_they_come
+        assign {takes, ends, bad_length_now, replaced}
+            = {corrected_takes, corrected_ends, corrected_bad_length, corrected_replaced};
+        assign {stresses, saturated, not_finite} = {corrected, corrected_saturated, corrected_not_finite};
+        assign {smoothing_busy, settled, averaged} = {1'b0, ended, 1'b0};
+        assign smoothed = 26'd0;
+        wire _unused_smoothing = &{1'b0, smoothing};
+    end
 
     // ---- To CeAn, taxel by taxel
     localparam WORD_BITS = 27 * CANDIDATES + 1; // of a taxel: whether it was replaced, its candidates
@@ -198,19 +194,17 @@ module sptfra_frame_writer #(
 
     assign stress = averaged ? word[27*(CANDIDATES-1) +: 27] : word[26:0];
 
-    generate
-        for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_words
-            assign words[WORD_BITS*(sample+1)-1] = replaced;
+    for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_words
+        assign words[WORD_BITS*(sample+1)-1] = replaced;
 
-            for (candidate = 0; candidate < CANDIDATES; candidate = candidate + 1) begin : gen_candidates
-                wire [26:0] of_sample = stresses[27*(SAMPLES*candidate+sample) +: 27];
+        for (candidate = 0; candidate < CANDIDATES; candidate = candidate + 1) begin : gen_candidates
+            wire [26:0] of_sample = stresses[27*(SAMPLES*candidate+sample) +: 27];
 
-                assign words[WORD_BITS*sample+27*candidate +: 27] = of_sample;
-                assign narrow_stresses[STRESS_BITS*(CANDIDATES*sample+candidate) +: STRESS_BITS]
-                    = of_sample[STRESS_BITS-1:0];
-            end
+            assign words[WORD_BITS*sample+27*candidate +: 27] = of_sample;
+            assign narrow_stresses[STRESS_BITS*(CANDIDATES*sample+candidate) +: STRESS_BITS]
+                = of_sample[STRESS_BITS-1:0];
         end
-    endgenerate
+    end
 
     sptfra_taxel_stream #(
         .TAXELS  (TAXELS),
@@ -277,32 +271,30 @@ module sptfra_frame_writer #(
     // ---- Scale
     wire whole; // the lanes may have all of the frame
 
-    generate
-        if (SCALED != 0) begin : gen_scale
-            sptfra_frame_scale #(
-                .SAMPLES      (SAMPLES),
-                .CANDIDATES   (CANDIDATES),
-                .STRESS_BOUND (STRESS_BOUND)
-            ) scale (
-                .clock      (clock),
-                .reset      (reset),
-                .beat_valid (takes),
-                .stresses   (stresses),
-                .ends       (ends),
-                .bad_length (bad_length_now),
-                .averaged   (averaged),
-                .restart    (over),
-                .whole      (whole),
-                .scaled     (scaled),
-                .exponent   (exponent)
-            );
-        end else begin : gen_full_scale
-            assign whole = settled;
-            assign scaled = 1'b0;
-            assign exponent = 5'd0;
-            wire _unused_bound = &{1'b0, STRESS_BOUND};
-        end
-    endgenerate
+    if (SCALED != 0) begin : gen_scale
+        sptfra_frame_scale #(
+            .SAMPLES      (SAMPLES),
+            .CANDIDATES   (CANDIDATES),
+            .STRESS_BOUND (STRESS_BOUND)
+        ) scale (
+            .clock      (clock),
+            .reset      (reset),
+            .beat_valid (takes),
+            .stresses   (stresses),
+            .ends       (ends),
+            .bad_length (bad_length_now),
+            .averaged   (averaged),
+            .restart    (over),
+            .whole      (whole),
+            .scaled     (scaled),
+            .exponent   (exponent)
+        );
+    end else begin : gen_full_scale
+        assign whole = settled;
+        assign scaled = 1'b0;
+        assign exponent = 5'd0;
+        wire _unused_bound = &{1'b0, STRESS_BOUND};
+    end
 
     // ---- To the lanes, orbit by orbit
     wire frame_written;

@@ -53,11 +53,9 @@ module sptfra_replace #(
 
     localparam signed [47:0] MOST = {{21{STRESS_BOUND[26]}}, STRESS_BOUND};
 
-    generate
-        if ((REPLACEABLE < 1) || (REPLACEABLE > 8)) begin : gen_check_map
-            sptfra_error_places_for_dead_taxels_must_be_1_to_8 invalid ();
-        end
-    endgenerate
+    if ((REPLACEABLE < 1) || (REPLACEABLE > 8)) begin : gen_check_map
+        sptfra_error_places_for_dead_taxels_must_be_1_to_8 invalid ();
+    end
 
     // ---- Weights of the reading that comes next; of the frame, which taxels are dead
     wire [18*REPLACEABLE-1:0] weights_ahead;
@@ -65,32 +63,30 @@ module sptfra_replace #(
     wire [4:0] weight_shift;
     wire [16*REPLACEABLE-1:0] taxels; // ascending
 
-    generate
-        if (MAPPED != 0) begin : gen_map
-            assign {weights_ahead, count, weight_shift, taxels} = map;
-            wire _unused_rom = &{1'b0, taxel_ahead, REPLACED_COUNT, REPLACED_SHIFT, REPLACED_TAXELS, ROM_DIR != "",
-                ROM_NAME != ""};
-        end else begin : gen_neighbours
-            assign count = REPLACED_COUNT;
-            assign weight_shift = REPLACED_SHIFT;
-            assign taxels = REPLACED_TAXELS;
+    if (MAPPED != 0) begin : gen_map
+        assign {weights_ahead, count, weight_shift, taxels} = map;
+        wire _unused_rom = &{1'b0, taxel_ahead, REPLACED_COUNT, REPLACED_SHIFT, REPLACED_TAXELS, ROM_DIR != "",
+            ROM_NAME != ""};
+    end else begin : gen_neighbours
+        assign count = REPLACED_COUNT;
+        assign weight_shift = REPLACED_SHIFT;
+        assign taxels = REPLACED_TAXELS;
 
-            sptfra_rom #(
-                .WIDTH         (18 * REPLACEABLE),
-                .DEPTH         (TAXELS),
-                .ADDRESS_WIDTH (TAXEL_WIDTH),
-                .ROM_DIR       (ROM_DIR),
-                .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_neighbours.mem"})
-            ) neighbours (
-                .clock   (clock),
-                .enable  (1'b1),
-                .address (taxel_ahead),
-                .data    (weights_ahead)
-            );
+        sptfra_rom #(
+            .WIDTH         (18 * REPLACEABLE),
+            .DEPTH         (TAXELS),
+            .ADDRESS_WIDTH (TAXEL_WIDTH),
+            .ROM_DIR       (ROM_DIR),
+            .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_neighbours.mem"})
+        ) neighbours (
+            .clock   (clock),
+            .enable  (1'b1),
+            .address (taxel_ahead),
+            .data    (weights_ahead)
+        );
 
-            wire _unused_map = &{1'b0, map};
-        end
-    endgenerate
+        wire _unused_map = &{1'b0, map};
+    end
 
     // ---- Keep: the frame as it comes, then once more from its first taxel
     reg [TAXEL_WIDTH-1:0] place; // of the reading that comes, or that is read again
@@ -162,32 +158,30 @@ module sptfra_replace #(
     wire [31:0] place_wide = {{(32-TAXEL_WIDTH){1'b0}}, place};
     genvar index;
 
-    generate
-        for (index = 0; index < REPLACEABLE; index = index + 1) begin : gen_sums
-            wire signed [17:0] weight = weights[18*index +: 18];
+    for (index = 0; index < REPLACEABLE; index = index + 1) begin : gen_sums
+        wire signed [17:0] weight = weights[18*index +: 18];
 
-            sptfra_mac neighbours (
-                .clock       (clock),
-                .reset       (reset),
-                .valid       (in_takes),
-                .first       (place == {TAXEL_WIDTH{1'b0}}),
-                .coefficient (weight),
-                .data        (in_stress),
-                .accumulator (sums[48*index +: 48])
-            );
+        sptfra_mac neighbours (
+            .clock       (clock),
+            .reset       (reset),
+            .valid       (in_takes),
+            .first       (place == {TAXEL_WIDTH{1'b0}}),
+            .coefficient (weight),
+            .data        (in_stress),
+            .accumulator (sums[48*index +: 48])
+        );
 
-            // Once the first has gone out, those behind it move up
-            always @(posedge clock) begin
-                if (holds) begin
-                    waiting[48*index +: 48] <= sums[48*index +: 48];
-                    waiting_taxels[16*index +: 16] <= taxels[16*index +: 16];
-                end else if (dead_1) begin
-                    waiting[48*index +: 48] <= waiting[48*((index + 1) % REPLACEABLE) +: 48];
-                    waiting_taxels[16*index +: 16] <= waiting_taxels[16*((index + 1) % REPLACEABLE) +: 16];
-                end
+        // Once the first has gone out, those behind it move up
+        always @(posedge clock) begin
+            if (holds) begin
+                waiting[48*index +: 48] <= sums[48*index +: 48];
+                waiting_taxels[16*index +: 16] <= taxels[16*index +: 16];
+            end else if (dead_1) begin
+                waiting[48*index +: 48] <= waiting[48*((index + 1) % REPLACEABLE) +: 48];
+                waiting_taxels[16*index +: 16] <= waiting_taxels[16*((index + 1) % REPLACEABLE) +: 16];
             end
         end
-    endgenerate
+    end
 
     always @(posedge clock) begin
         weights <= weights_ahead;

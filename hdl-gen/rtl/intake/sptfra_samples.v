@@ -85,107 +85,101 @@ module sptfra_samples #(
     wire signed [9:0] shift;
     wire [26:0] limit = ((CALIBRATED != 0) && (SHIFTS != 0)) ? bank_reach : NUMBER_BOUND;
 
-    generate
-        if ((PER_TAXEL != 0) && (SHIFTS == 0)) begin : gen_exponents
-            // Behind the memory stands a register
-            reg [SAMPLE_BITS-1:0] sample_1;
-            reg [SAMPLE_BITS-1:0] sample_2;
-            reg signed [9:0] exponent_2;
+    if ((PER_TAXEL != 0) && (SHIFTS == 0)) begin : gen_exponents
+        // Behind the memory stands a register
+        reg [SAMPLE_BITS-1:0] sample_1;
+        reg [SAMPLE_BITS-1:0] sample_2;
+        reg signed [9:0] exponent_2;
 
-            assign decoded = sample_2;
-            assign shift = exponent_2;
+        assign decoded = sample_2;
+        assign shift = exponent_2;
 
-            always @(posedge clock) begin
-                sample_1 <= sample;
-                sample_2 <= sample_1;
-                exponent_2 <= exponent;
-            end
-        end else begin : gen_exponent
-            assign decoded = sample;
-            assign shift = SHIFT;
+        always @(posedge clock) begin
+            sample_1 <= sample;
+            sample_2 <= sample_1;
+            exponent_2 <= exponent;
         end
-    endgenerate
+    end else begin : gen_exponent
+        assign decoded = sample;
+        assign shift = SHIFT;
+    end
 
-    generate
-        if (SAMPLE == 0) begin : gen_float
-            sptfra_float_to_fixed float_to_fixed (
-                .clock      (clock),
-                .enable     (1'b1),
-                .float_bits (decoded),
-                .shift      (shift),
-                .limit      (limit),
-                .fixed      (number),
-                .saturated  (number_saturated),
-                .not_finite (number_not_finite)
-            );
-        end else begin : gen_integer
-            sptfra_int_to_fixed #(
-                .SIGNED ((SAMPLE == 1) ? 1 : 0)
-            ) int_to_fixed (
-                .clock     (clock),
-                .enable    (1'b1),
-                .count     (decoded),
-                .shift     (shift),
-                .limit     (limit),
-                .fixed     (number),
-                .saturated (number_saturated)
-            );
+    if (SAMPLE == 0) begin : gen_float
+        sptfra_float_to_fixed float_to_fixed (
+            .clock      (clock),
+            .enable     (1'b1),
+            .float_bits (decoded),
+            .shift      (shift),
+            .limit      (limit),
+            .fixed      (number),
+            .saturated  (number_saturated),
+            .not_finite (number_not_finite)
+        );
+    end else begin : gen_integer
+        sptfra_int_to_fixed #(
+            .SIGNED ((SAMPLE == 1) ? 1 : 0)
+        ) int_to_fixed (
+            .clock     (clock),
+            .enable    (1'b1),
+            .count     (decoded),
+            .shift     (shift),
+            .limit     (limit),
+            .fixed     (number),
+            .saturated (number_saturated)
+        );
 
-            assign number_not_finite = 1'b0;
-        end
-    endgenerate
+        assign number_not_finite = 1'b0;
+    end
 
     // ---- Counts along the curve
     wire signed [26:0] count;
     wire count_saturated;
     wire count_not_finite;
 
-    generate
-        if (CURVE_LEVELS != 0) begin : gen_curve
-            localparam [31:0] SEGMENTS = 1 << CURVE_LEVELS;
-            wire [77:0] line;
+    if (CURVE_LEVELS != 0) begin : gen_curve
+        localparam [31:0] SEGMENTS = 1 << CURVE_LEVELS;
+        wire [77:0] line;
 
-            if (CALIBRATED != 0) begin : gen_bank
-                assign line = bank_line;
-            end else begin : gen_lines
-                sptfra_rom #(
-                    .WIDTH         (78),
-                    .DEPTH         (1 << CURVE_LEVELS),
-                    .ADDRESS_WIDTH (CURVE_LEVELS),
-                    .ROM_DIR       (ROM_DIR),
-                    .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_curve.mem"})
-                ) lines (
-                    .clock   (clock),
-                    .enable  (1'b1),
-                    .address (segment),
-                    .data    (line)
-                );
-            end
-
-            sptfra_curve #(
-                .LEVELS (CURVE_LEVELS)
-            ) curve (
-                .clock             (clock),
-                .number            (number),
-                .number_saturated  (number_saturated),
-                .number_not_finite (number_not_finite),
-                .value             (count),
-                .saturated         (count_saturated),
-                .not_finite        (count_not_finite),
-                .knots             ((CALIBRATED != 0) ? bank_knots : CURVE_KNOTS),
-                .count             ((CALIBRATED != 0) ? bank_segments : SEGMENTS[6:0]),
-                .last              ((CALIBRATED != 0) ? bank_last : CURVE_LAST),
-                .segment           (segment),
-                .line_1            (line)
+        if (CALIBRATED != 0) begin : gen_bank
+            assign line = bank_line;
+        end else begin : gen_lines
+            sptfra_rom #(
+                .WIDTH         (78),
+                .DEPTH         (1 << CURVE_LEVELS),
+                .ADDRESS_WIDTH (CURVE_LEVELS),
+                .ROM_DIR       (ROM_DIR),
+                .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_curve.mem"})
+            ) lines (
+                .clock   (clock),
+                .enable  (1'b1),
+                .address (segment),
+                .data    (line)
             );
-        end else begin : gen_straight
-            assign count = number;
-            assign count_saturated = number_saturated;
-            assign count_not_finite = number_not_finite;
-            assign segment = {LEVELS{1'b0}};
-            wire _unused = &{1'b0, CURVE_KNOTS, CURVE_LAST};
         end
-    endgenerate
+
+        sptfra_curve #(
+            .LEVELS (CURVE_LEVELS)
+        ) curve (
+            .clock             (clock),
+            .number            (number),
+            .number_saturated  (number_saturated),
+            .number_not_finite (number_not_finite),
+            .value             (count),
+            .saturated         (count_saturated),
+            .not_finite        (count_not_finite),
+            .knots             ((CALIBRATED != 0) ? bank_knots : CURVE_KNOTS),
+            .count             ((CALIBRATED != 0) ? bank_segments : SEGMENTS[6:0]),
+            .last              ((CALIBRATED != 0) ? bank_last : CURVE_LAST),
+            .segment           (segment),
+            .line_1            (line)
+        );
+    end else begin : gen_straight
+        assign count = number;
+        assign count_saturated = number_saturated;
+        assign count_not_finite = number_not_finite;
+        assign segment = {LEVELS{1'b0}};
+        wire _unused = &{1'b0, CURVE_KNOTS, CURVE_LAST};
+    end
 
     // ---- Counts to stress. Exponent, gain and offset come a cycle after their taxel
     reg [TAXEL_WIDTH-1:0] sampled;
@@ -209,87 +203,85 @@ module sptfra_samples #(
         end
     end
 
-    generate
-        if (COUNTS != 0) begin : gen_counts
-            wire [17:0] gain;
-            wire [OFFSET_BITS-1:0] offset;
+    if (COUNTS != 0) begin : gen_counts
+        wire [17:0] gain;
+        wire [OFFSET_BITS-1:0] offset;
 
-            if (PER_TAXEL == 0) begin : gen_shared
-                assign {exponent, gain, offset} = {EXPONENT, GAIN, {OFFSET_BITS{1'b0}}};
-            end else if (CALIBRATED != 0) begin : gen_bank
-                assign {exponent, gain, offset} = bank_constants;
-            end else begin : gen_roms
-                wire [9:0] exponent_bits;
+        if (PER_TAXEL == 0) begin : gen_shared
+            assign {exponent, gain, offset} = {EXPONENT, GAIN, {OFFSET_BITS{1'b0}}};
+        end else if (CALIBRATED != 0) begin : gen_bank
+            assign {exponent, gain, offset} = bank_constants;
+        end else begin : gen_roms
+            wire [9:0] exponent_bits;
 
-                assign exponent = exponent_bits;
+            assign exponent = exponent_bits;
 
-                sptfra_rom #(
-                    .WIDTH         (10),
-                    .DEPTH         (TAXELS),
-                    .ADDRESS_WIDTH (TAXEL_WIDTH),
-                    .ROM_DIR       (ROM_DIR),
-                    .FILE          ((TAXEL_NAME == "") ? "" : {TAXEL_NAME, "_exponents.mem"})
-                ) exponents (
-                    .clock   (clock),
-                    .enable  (1'b1),
-                    .address (exponent_taxel),
-                    .data    (exponent_bits)
-                );
-
-                sptfra_rom #(
-                    .WIDTH         (18),
-                    .DEPTH         (TAXELS),
-                    .ADDRESS_WIDTH (TAXEL_WIDTH),
-                    .ROM_DIR       (ROM_DIR),
-                    .FILE          ((TAXEL_NAME == "") ? "" : {TAXEL_NAME, "_gains.mem"})
-                ) gains (
-                    .clock   (clock),
-                    .enable  (1'b1),
-                    .address (gain_taxel),
-                    .data    (gain)
-                );
-
-                sptfra_rom #(
-                    .WIDTH         (OFFSET_BITS),
-                    .DEPTH         (TAXELS),
-                    .ADDRESS_WIDTH (TAXEL_WIDTH),
-                    .ROM_DIR       (ROM_DIR),
-                    .FILE          ((TAXEL_NAME == "") ? "" : {TAXEL_NAME, "_offsets.mem"})
-                ) offsets (
-                    .clock   (clock),
-                    .enable  (1'b1),
-                    .address (gain_taxel),
-                    .data    (offset)
-                );
-            end
-
-            sptfra_counts #(
-                .SHIFTS       (SHIFTS),
-                .OFFSET_BITS  (OFFSET_BITS),
-                .SHIFT        (COUNT_SHIFT),
-                .FULL_SCALE   (FULL_SCALE),
-                .STRESS_BOUND (STRESS_BOUND)
-            ) counts (
-                .clock             (clock),
-                .number            (count),
-                .number_saturated  (count_saturated),
-                .number_not_finite (count_not_finite),
-                .exponent_1        (exponent),
-                .gain_1            (gain),
-                .offset_1          (offset),
-                .stress            (stress),
-                .saturated         (saturated),
-                .not_finite        (not_finite)
+            sptfra_rom #(
+                .WIDTH         (10),
+                .DEPTH         (TAXELS),
+                .ADDRESS_WIDTH (TAXEL_WIDTH),
+                .ROM_DIR       (ROM_DIR),
+                .FILE          ((TAXEL_NAME == "") ? "" : {TAXEL_NAME, "_exponents.mem"})
+            ) exponents (
+                .clock   (clock),
+                .enable  (1'b1),
+                .address (exponent_taxel),
+                .data    (exponent_bits)
             );
-        end else begin : gen_stress
-            assign exponent = 10'sd0;
-            assign stress = count;
-            assign saturated = count_saturated;
-            assign not_finite = count_not_finite;
-            wire _unused = &{1'b0, exponent, OFFSET_BITS != 0, COUNT_SHIFT != 0, FULL_SCALE, STRESS_BOUND,
-                TAXEL_NAME != ""};
+
+            sptfra_rom #(
+                .WIDTH         (18),
+                .DEPTH         (TAXELS),
+                .ADDRESS_WIDTH (TAXEL_WIDTH),
+                .ROM_DIR       (ROM_DIR),
+                .FILE          ((TAXEL_NAME == "") ? "" : {TAXEL_NAME, "_gains.mem"})
+            ) gains (
+                .clock   (clock),
+                .enable  (1'b1),
+                .address (gain_taxel),
+                .data    (gain)
+            );
+
+            sptfra_rom #(
+                .WIDTH         (OFFSET_BITS),
+                .DEPTH         (TAXELS),
+                .ADDRESS_WIDTH (TAXEL_WIDTH),
+                .ROM_DIR       (ROM_DIR),
+                .FILE          ((TAXEL_NAME == "") ? "" : {TAXEL_NAME, "_offsets.mem"})
+            ) offsets (
+                .clock   (clock),
+                .enable  (1'b1),
+                .address (gain_taxel),
+                .data    (offset)
+            );
         end
-    endgenerate
+
+        sptfra_counts #(
+            .SHIFTS       (SHIFTS),
+            .OFFSET_BITS  (OFFSET_BITS),
+            .SHIFT        (COUNT_SHIFT),
+            .FULL_SCALE   (FULL_SCALE),
+            .STRESS_BOUND (STRESS_BOUND)
+        ) counts (
+            .clock             (clock),
+            .number            (count),
+            .number_saturated  (count_saturated),
+            .number_not_finite (count_not_finite),
+            .exponent_1        (exponent),
+            .gain_1            (gain),
+            .offset_1          (offset),
+            .stress            (stress),
+            .saturated         (saturated),
+            .not_finite        (not_finite)
+        );
+    end else begin : gen_stress
+        assign exponent = 10'sd0;
+        assign stress = count;
+        assign saturated = count_saturated;
+        assign not_finite = count_not_finite;
+        wire _unused = &{1'b0, exponent, OFFSET_BITS != 0, COUNT_SHIFT != 0, FULL_SCALE, STRESS_BOUND,
+            TAXEL_NAME != ""};
+    end
 
     wire _unused_bank = &{1'b0, EXPONENT, GAIN, bank_constants, bank_knots, bank_segments, bank_last,
         bank_reach, bank_line, ROM_DIR != "", ROM_NAME != ""};

@@ -94,49 +94,47 @@ module sptfra_smoothing #(
     wire [27*SAMPLES-1:0] steps_3;
     genvar sample;
 
-    generate
-        for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_samples
-            // Stage 1: what the average was, with nine bits more and half a step of the stress: cut, it is rounded
-            wire [62:0] word_1 = kept_1[63*sample +: 63];
-            reg [26:0] stress_1;
-            wire signed [36:0] old_1 = bank_averaged ? $signed({word_1[35], word_1[35:0]})
-                : $signed({word_1[62], word_1[62:36], 9'h100});
-            // Stages 2 to 4: what it becomes
-            reg [26:0] stress_2;
-            reg [26:0] stress_3;
-            reg [26:0] stress_4;
-            reg signed [36:0] old_2;
-            reg signed [36:0] old_3;
-            reg signed [36:0] step_2;
-            reg [26:0] whole_3;
-            reg signed [37:0] twice_3;
-            reg signed [35:0] average_4;
-            wire signed [37:0] rounded_3 = twice_3 + 38'sd1;
-            wire signed [36:0] sum_3 = old_3 + rounded_3[37:1];
+    for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_samples
+        // Stage 1: what the average was, with nine bits more and half a step of the stress: cut, it is rounded
+        wire [62:0] word_1 = kept_1[63*sample +: 63];
+        reg [26:0] stress_1;
+        wire signed [36:0] old_1 = bank_averaged ? $signed({word_1[35], word_1[35:0]})
+            : $signed({word_1[62], word_1[62:36], 9'h100});
+        // Stages 2 to 4: what it becomes
+        reg [26:0] stress_2;
+        reg [26:0] stress_3;
+        reg [26:0] stress_4;
+        reg signed [36:0] old_2;
+        reg signed [36:0] old_3;
+        reg signed [36:0] step_2;
+        reg [26:0] whole_3;
+        reg signed [37:0] twice_3;
+        reg signed [35:0] average_4;
+        wire signed [37:0] rounded_3 = twice_3 + 38'sd1;
+        wire signed [36:0] sum_3 = old_3 + rounded_3[37:1];
 
-            assign magnitudes_1[27*sample +: 27] = stress_1[26] ? -stress_1 : stress_1;
-            assign steps_3[27*sample +: 27] = whole_3;
-            assign kept_4[63*sample +: 63] = {stress_4, average_4};
-            assign out_stresses[27*sample +: 27] = stress_4;
-            assign out_averages[27*sample +: 27] = average_4[35:9];
+        assign magnitudes_1[27*sample +: 27] = stress_1[26] ? -stress_1 : stress_1;
+        assign steps_3[27*sample +: 27] = whole_3;
+        assign kept_4[63*sample +: 63] = {stress_4, average_4};
+        assign out_stresses[27*sample +: 27] = stress_4;
+        assign out_averages[27*sample +: 27] = average_4[35:9];
 
-            always @(posedge clock) begin
-                stress_1 <= in_stresses[27*sample +: 27];
-                stress_2 <= stress_1;
-                old_2 <= old_1;
-                step_2 <= $signed({stress_1[26], stress_1, 9'h100}) - old_1;
-                stress_3 <= stress_2;
-                old_3 <= old_2;
-                twice_3 <= $signed({step_2, 1'b0}) >>> rate_held;
-                // A dead taxel's own noise is that of a sum
-                whole_3 <= (!takes[2] || flags[FLAGS]) ? 27'd0 : step_2[36] ? ~step_2[35:9] : step_2[35:9];
-                stress_4 <= stress_3;
-                average_4 <= sum_3[35:0];
-            end
-
-            wire _unused_bits = &{1'b0, rounded_3[0], sum_3[36], step_2[8:0]};
+        always @(posedge clock) begin
+            stress_1 <= in_stresses[27*sample +: 27];
+            stress_2 <= stress_1;
+            old_2 <= old_1;
+            step_2 <= $signed({stress_1[26], stress_1, 9'h100}) - old_1;
+            stress_3 <= stress_2;
+            old_3 <= old_2;
+            twice_3 <= $signed({step_2, 1'b0}) >>> rate_held;
+            // A dead taxel's own noise is that of a sum
+            whole_3 <= (!takes[2] || flags[FLAGS]) ? 27'd0 : step_2[36] ? ~step_2[35:9] : step_2[35:9];
+            stress_4 <= stress_3;
+            average_4 <= sum_3[35:0];
         end
-    endgenerate
+
+        wire _unused_bits = &{1'b0, rounded_3[0], sum_3[36], step_2[8:0]};
+    end
 
     // ---- Largest stress and step, and the limit
     wire [26:0] magnitude, step;

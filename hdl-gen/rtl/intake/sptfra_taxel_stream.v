@@ -39,64 +39,62 @@ module sptfra_taxel_stream #(
     localparam BEAT_WIDTH = (BEATS > 2) ? $clog2(BEATS) : 1;
     wire [31:0] beat_wide = {{(32-COUNT_WIDTH){1'b0}}, beat};
 
-    generate
-        if ((SAMPLES == 1) && (KEPT == 0)) begin : gen_at_once
-            assign stress_valid = takes;
-            assign stress = stresses;
-            assign done = ends;
-            wire _unused_state = &{1'b0, clock, reset, whole, restart};
-        end else begin : gen_one_by_one
-            localparam SAMPLE_WIDTH = $clog2(SAMPLES);
-            localparam INDEX_WIDTH = BEAT_WIDTH + SAMPLE_WIDTH;
-            localparam [31:0] LAST_WIDE = TAXELS - 1;
-            localparam READ_TO_STRESS = 2; // of the memory
-            reg [INDEX_WIDTH-1:0] taxel;
-            reg all_shown;
-            reg [READ_TO_STRESS:1] shows;
-            reg [READ_TO_STRESS:1] shows_last;
-            wire last_taxel = (taxel == LAST_WIDE[INDEX_WIDTH-1:0]);
-            wire [31:0] beat_needed = {{(32-BEAT_WIDTH){1'b0}}, taxel[SAMPLE_WIDTH +: BEAT_WIDTH]};
-            wire show = (whole || ((KEPT == 0) && !last_taxel && (beat_needed < beat_wide))) && !all_shown;
-            wire [WIDTH-1:0] kept;
+    if ((SAMPLES == 1) && (KEPT == 0)) begin : gen_at_once
+        assign stress_valid = takes;
+        assign stress = stresses;
+        assign done = ends;
+        wire _unused_state = &{1'b0, clock, reset, whole, restart};
+    end else begin : gen_one_by_one
+        localparam SAMPLE_WIDTH = $clog2(SAMPLES);
+        localparam INDEX_WIDTH = BEAT_WIDTH + SAMPLE_WIDTH;
+        localparam [31:0] LAST_WIDE = TAXELS - 1;
+        localparam READ_TO_STRESS = 2; // of the memory
+        reg [INDEX_WIDTH-1:0] taxel;
+        reg all_shown;
+        reg [READ_TO_STRESS:1] shows;
+        reg [READ_TO_STRESS:1] shows_last;
+        wire last_taxel = (taxel == LAST_WIDE[INDEX_WIDTH-1:0]);
+        wire [31:0] beat_needed = {{(32-BEAT_WIDTH){1'b0}}, taxel[SAMPLE_WIDTH +: BEAT_WIDTH]};
+        wire show = (whole || ((KEPT == 0) && !last_taxel && (beat_needed < beat_wide))) && !all_shown;
+        wire [WIDTH-1:0] kept;
 
-            assign stress_valid = shows[READ_TO_STRESS];
-            assign stress = kept;
-            assign done = shows_last[READ_TO_STRESS];
+        assign stress_valid = shows[READ_TO_STRESS];
+        assign stress = kept;
+        assign done = shows_last[READ_TO_STRESS];
 
-            sptfra_frame_memory #(
-                .SAMPLES (SAMPLES),
-                .BEATS   (BEATS),
-                .WIDTH   (WIDTH)
-            ) frame (
-                .clock          (clock),
-                .write_enable   (takes),
-                .write_beat     (beat_wide[BEAT_WIDTH-1:0]),
-                .write_stresses (stresses),
-                .read_enable    (1'b1),
-                .taxel          (taxel),
-                .stress         (kept)
-            );
+        sptfra_frame_memory #(
+            .SAMPLES (SAMPLES),
+            .BEATS   (BEATS),
+            .WIDTH   (WIDTH)
+        ) frame (
+            .clock          (clock),
+            .write_enable   (takes),
+            .write_beat     (beat_wide[BEAT_WIDTH-1:0]),
+            .write_stresses (stresses),
+            .read_enable    (1'b1),
+            .taxel          (taxel),
+            .stress         (kept)
+        );
 
-            always @(posedge clock) begin
-                shows <= {shows[1], show};
-                shows_last <= {shows_last[1], show && last_taxel};
-                if (show) begin
-                    taxel <= taxel + 1'b1;
-                    all_shown <= last_taxel;
-                end
-                if (reset || restart) begin
-                    taxel <= {INDEX_WIDTH{1'b0}};
-                    all_shown <= 1'b0;
-                end
-                if (reset) begin
-                    shows <= 2'd0;
-                    shows_last <= 2'd0;
-                end
+        always @(posedge clock) begin
+            shows <= {shows[1], show};
+            shows_last <= {shows_last[1], show && last_taxel};
+            if (show) begin
+                taxel <= taxel + 1'b1;
+                all_shown <= last_taxel;
             end
-
-            wire _unused_ends = &{1'b0, ends};
+            if (reset || restart) begin
+                taxel <= {INDEX_WIDTH{1'b0}};
+                all_shown <= 1'b0;
+            end
+            if (reset) begin
+                shows <= 2'd0;
+                shows_last <= 2'd0;
+            end
         end
-    endgenerate
+
+        wire _unused_ends = &{1'b0, ends};
+    end
 
     wire _unused = &{1'b0, beat_wide};
 

@@ -85,14 +85,12 @@ module sptfra_op #(
     input  wire m_tready
 );
 
-    generate
-        if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
-            sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
-        end
-        if (SLIP_RELEASE > SLIP_LIMIT) begin : gen_check_slip
-            sptfra_error_a_slip_ends_below_its_limit invalid ();
-        end
-    endgenerate
+    if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
+        sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
+    end
+    if (SLIP_RELEASE > SLIP_LIMIT) begin : gen_check_slip
+        sptfra_error_a_slip_ends_below_its_limit invalid ();
+    end
 
     localparam integer FRICTION_FRACTION = 16;
 
@@ -241,33 +239,31 @@ module sptfra_op #(
     };
     // ---- Slip: mu against the limit, which is lower while the frames before slip. Without contact nothing slips; a
     // frame that cannot be trusted changes nothing
-    generate
-        if (SLIP_LIMIT != 18'd0) begin : gen_slip
-            // mu with 16 fraction bits: there before the output begins, a cycle behind the quotient
-            localparam signed [9:0] FRACTION = FRICTION_FRACTION[9:0];
-            wire signed [9:0] down = -(friction_exponent + FRACTION);
-            reg [34:0] friction;
-            reg slipping; // the frame before slips
-            reg output_started; // with the status being loaded
+    if (SLIP_LIMIT != 18'd0) begin : gen_slip
+        // mu with 16 fraction bits: there before the output begins, a cycle behind the quotient
+        localparam signed [9:0] FRACTION = FRICTION_FRACTION[9:0];
+        wire signed [9:0] down = -(friction_exponent + FRACTION);
+        reg [34:0] friction;
+        reg slipping; // the frame before slips
+        reg output_started; // with the status being loaded
 
-            assign slips = (friction >= {17'd0, slipping ? SLIP_RELEASE : SLIP_LIMIT});
+        assign slips = (friction >= {17'd0, slipping ? SLIP_RELEASE : SLIP_LIMIT});
 
-            always @(posedge clock) begin
-                // Not below 1: a quotient of 30 bits and more is far above any limit
-                friction <= (down < 10'sd1) ? {35{friction_quotient != 64'd0}} : friction_quotient[34:0] >> down;
-                output_started <= output_start && !reset;
-                if (output_started && !bad) begin
-                    slipping <= answered && slips;
-                end
-                if (reset) begin
-                    slipping <= 1'b0;
-                end
+        always @(posedge clock) begin
+            // Not below 1: a quotient of 30 bits and more is far above any limit
+            friction <= (down < 10'sd1) ? {35{friction_quotient != 64'd0}} : friction_quotient[34:0] >> down;
+            output_started <= output_start && !reset;
+            if (output_started && !bad) begin
+                slipping <= answered && slips;
             end
-        end else begin : gen_none
-            assign slips = 1'b0;
-            wire _unused_slip = &{1'b0, SLIP_RELEASE};
+            if (reset) begin
+                slipping <= 1'b0;
+            end
         end
-    endgenerate
+    end else begin : gen_none
+        assign slips = 1'b0;
+        wire _unused_slip = &{1'b0, SLIP_RELEASE};
+    end
 
     // Replaced taxels, version of the calibration, contacts
     wire [31:0] counters = {12'd0, answered ? replaced : 4'd0, version, answered ? contacts : 8'd0};

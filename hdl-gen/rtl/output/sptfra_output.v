@@ -85,11 +85,9 @@ module sptfra_output #(
     localparam integer BEFORE_READ = SUMMARY_BEATS + 3 - FIELD_STAGES;
     localparam [SUMMARY_WIDTH-1:0] BEFORE_READ_BEAT = BEFORE_READ[SUMMARY_WIDTH-1:0];
 
-    generate
-        if ((WORDS != 1) && (WORDS != 2) && (WORDS != 4)) begin : gen_check_words
-            sptfra_error_words_of_a_beat_must_be_1_2_or_4 invalid ();
-        end
-    endgenerate
+    if ((WORDS != 1) && (WORDS != 2) && (WORDS != 4)) begin : gen_check_words
+        sptfra_error_words_of_a_beat_must_be_1_2_or_4 invalid ();
+    end
 
     // ---- The frame, held
     reg busy;
@@ -129,13 +127,11 @@ module sptfra_output #(
     wire last_beat = (beat == LAST_BEAT[BEAT_WIDTH-1:0]);
     wire beat_in_field;
 
-    generate
-        if (FIELD != 0) begin : gen_field
-            assign beat_in_field = (issued_beat[BEAT_WIDTH-1:SUMMARY_WIDTH] != {(BEAT_WIDTH - SUMMARY_WIDTH){1'b0}});
-        end else begin : gen_summary
-            assign beat_in_field = 1'b0;
-        end
-    endgenerate
+    if (FIELD != 0) begin : gen_field
+        assign beat_in_field = (issued_beat[BEAT_WIDTH-1:SUMMARY_WIDTH] != {(BEAT_WIDTH - SUMMARY_WIDTH){1'b0}});
+    end else begin : gen_summary
+        assign beat_in_field = 1'b0;
+    end
 
     assign idle = !busy && !issued && !valid[1] && !valid[2]; // the last beat no longer needs what is held
     assign field_mu_x = held_mu_x;
@@ -213,42 +209,40 @@ module sptfra_output #(
     // ---- Stages 3 to 11: the words of a beat
     genvar index;
 
-    generate
-        for (index = 0; index < WORDS; index = index + 1) begin : gen_words
-            localparam [3:0] PLACE = index;
-            wire [31:0] word_wide_2 = {{(32-SUMMARY_WIDTH){1'b0}}, beat_2} << WORD_WIDTH;
-            wire signed [63:0] force_3 = $signed(field_value[64*index +: 64]);
-            wire _unused_word = &{1'b0, word_wide_2};
+    for (index = 0; index < WORDS; index = index + 1) begin : gen_words
+        localparam [3:0] PLACE = index;
+        wire [31:0] word_wide_2 = {{(32-SUMMARY_WIDTH){1'b0}}, beat_2} << WORD_WIDTH;
+        wire signed [63:0] force_3 = $signed(field_value[64*index +: 64]);
+        wire _unused_word = &{1'b0, word_wide_2};
 
-            sptfra_output_word #(
-                .FORCE_LSB  (FORCE_LSB),
-                .TORQUE_LSB (TORQUE_LSB),
-                .FIELD_LSB  (FIELD_LSB)
-            ) word (
-                .clock             (clock),
-                .advance           (advance),
-                .word_2            (word_wide_2[3:0] | PLACE),
-                .in_field_3        (in_field[3]),
-                .blank_3           (blanks[3]),
-                .behind_3          ((index >= REMAINDER) && lasts[3]),
-                .field_value_3     (force_3),
-                .data_11           (m_tdata[32*index +: 32]),
-                .frame_2           (frame_2),
-                .status            (held_status),
-                .timestamp         (held_timestamp),
-                .counters          (held_counters),
-                .scale             (held_scale),
-                .wrench            (held_wrench),
-                .friction_quotient (held_quotient),
-                .friction_exponent (held_exponent),
-                .angle             (held_angle),
-                .error_value       (held_error),
-                .error_exponent    (held_error_exponent),
-                .mu_x              (held_mu_x),
-                .mu_y              (held_mu_y)
-            );
-        end
-    endgenerate
+        sptfra_output_word #(
+            .FORCE_LSB  (FORCE_LSB),
+            .TORQUE_LSB (TORQUE_LSB),
+            .FIELD_LSB  (FIELD_LSB)
+        ) word (
+            .clock             (clock),
+            .advance           (advance),
+            .word_2            (word_wide_2[3:0] | PLACE),
+            .in_field_3        (in_field[3]),
+            .blank_3           (blanks[3]),
+            .behind_3          ((index >= REMAINDER) && lasts[3]),
+            .field_value_3     (force_3),
+            .data_11           (m_tdata[32*index +: 32]),
+            .frame_2           (frame_2),
+            .status            (held_status),
+            .timestamp         (held_timestamp),
+            .counters          (held_counters),
+            .scale             (held_scale),
+            .wrench            (held_wrench),
+            .friction_quotient (held_quotient),
+            .friction_exponent (held_exponent),
+            .angle             (held_angle),
+            .error_value       (held_error),
+            .error_exponent    (held_error_exponent),
+            .mu_x              (held_mu_x),
+            .mu_y              (held_mu_y)
+        );
+    end
 
     assign m_tlast = lasts[11];
     assign m_tvalid = valid[11];

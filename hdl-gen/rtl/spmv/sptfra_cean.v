@@ -54,11 +54,9 @@ module sptfra_cean #(
     output wire [5:0] flags // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
 );
 
-    generate
-        if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
-            sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
-        end
-    endgenerate
+    if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
+        sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
+    end
 
     // ---- Stage 1: magnitude; stage 2: sum and maximum
     reg valid_1;
@@ -91,34 +89,32 @@ module sptfra_cean #(
     // ---- The taxels at the grid's border, beside stage 2
     wire [39:0] edge_sum;
 
-    generate
-        if (WITH_ERROR != 0) begin : gen_border
-            localparam integer LAST_X = COLUMNS - 1;
-            localparam integer LAST_Y = ROWS - 1;
-            reg [5:0] x;
-            reg [5:0] y;
-            reg [39:0] at_edge;
-            wire row_ends = (x == LAST_X[5:0]);
-            wire is_edge = row_ends || (x == 6'd0) || (y == 6'd0) || (y == LAST_Y[5:0]);
+    if (WITH_ERROR != 0) begin : gen_border
+        localparam integer LAST_X = COLUMNS - 1;
+        localparam integer LAST_Y = ROWS - 1;
+        reg [5:0] x;
+        reg [5:0] y;
+        reg [39:0] at_edge;
+        wire row_ends = (x == LAST_X[5:0]);
+        wire is_edge = row_ends || (x == 6'd0) || (y == 6'd0) || (y == LAST_Y[5:0]);
 
-            assign edge_sum = at_edge;
+        assign edge_sum = at_edge;
 
-            always @(posedge clock) begin
-                if (valid_1) begin
-                    x <= row_ends ? 6'd0 : x + 6'd1;
-                    y <= row_ends ? y + 6'd1 : y;
-                    at_edge <= at_edge + (is_edge ? {13'd0, magnitude_1} : 40'd0);
-                end
-                if (clear) begin
-                    x <= 6'd0;
-                    y <= 6'd0;
-                    at_edge <= 40'd0;
-                end
+        always @(posedge clock) begin
+            if (valid_1) begin
+                x <= row_ends ? 6'd0 : x + 6'd1;
+                y <= row_ends ? y + 6'd1 : y;
+                at_edge <= at_edge + (is_edge ? {13'd0, magnitude_1} : 40'd0);
             end
-        end else begin : gen_no_border
-            assign edge_sum = 40'd0;
+            if (clear) begin
+                x <= 6'd0;
+                y <= 6'd0;
+                at_edge <= 40'd0;
+            end
         end
-    endgenerate
+    end else begin : gen_no_border
+        assign edge_sum = 40'd0;
+    end
 
     // ---- Centroids and direction
     wire measured; // at the end of MEASURE
@@ -164,43 +160,41 @@ module sptfra_cean #(
         end
     end
 
-    generate
-        if (DIRECTION != 0) begin : gen_direction
-            sptfra_direction #(
-                .COLUMNS (COLUMNS),
-                .ROWS    (ROWS),
-                .PITCH_X (PITCH_X),
-                .PITCH_Y (PITCH_Y)
-            ) direction (
-                .clock     (clock),
-                .reset     (reset),
-                .clear     (clear),
-                .noise     (noise),
-                .valid     (valid_1),
-                .tensile   (tensile_1),
-                .magnitude (magnitude_1),
-                .start     (idle && frame_done),
-                .done      (measured),
-                .push_x    (push_x),
-                .push_y    (push_y),
-                .no_push   (no_push)
-            );
-        end else begin : gen_none
-            // The sum, then its comparison
-            reg settled;
+    if (DIRECTION != 0) begin : gen_direction
+        sptfra_direction #(
+            .COLUMNS (COLUMNS),
+            .ROWS    (ROWS),
+            .PITCH_X (PITCH_X),
+            .PITCH_Y (PITCH_Y)
+        ) direction (
+            .clock     (clock),
+            .reset     (reset),
+            .clear     (clear),
+            .noise     (noise),
+            .valid     (valid_1),
+            .tensile   (tensile_1),
+            .magnitude (magnitude_1),
+            .start     (idle && frame_done),
+            .done      (measured),
+            .push_x    (push_x),
+            .push_y    (push_y),
+            .no_push   (no_push)
+        );
+    end else begin : gen_none
+        // The sum, then its comparison
+        reg settled;
 
-            always @(posedge clock) begin
-                settled <= (state == MEASURE);
-            end
-
-            assign measured = settled;
-            assign push_x = 27'sd0;
-            assign push_y = 27'sd0;
-            assign no_push = 1'b1;
-
-            wire _unused = &{1'b0, tensile_1, COLUMNS != 0, ROWS != 0, PITCH_X, PITCH_Y};
+        always @(posedge clock) begin
+            settled <= (state == MEASURE);
         end
-    endgenerate
+
+        assign measured = settled;
+        assign push_x = 27'sd0;
+        assign push_y = 27'sd0;
+        assign no_push = 1'b1;
+
+        wire _unused = &{1'b0, tensile_1, COLUMNS != 0, ROWS != 0, PITCH_X, PITCH_Y};
+    end
 
     // ---- Two buffers for finished frames: never full, since Bz asks first
     wire no_tension = (TENSION_READ != 0) && !pulled;

@@ -57,11 +57,9 @@ module sptfra_co #(
     output wire [18*40-1:0] sums
 );
 
-    generate
-        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
-            sptfra_error_channels_must_be_1_or_4 invalid ();
-        end
-    endgenerate
+    if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
+        sptfra_error_channels_must_be_1_or_4 invalid ();
+    end
 
     wire sums_there;
 
@@ -118,200 +116,198 @@ module sptfra_co #(
     );
 `endif
 
-    generate
-        if (CHANNELS == 4) begin : gen_folded
-            // ---- Sums: row q has G_pq, and T_z's, in the component on which it depends, row 4 + q those of T_x and
-            // T_y; row 3 what the weights take from F_z, T_x and T_y
-            reg [2:0] sums_count;
-            // A register on the way from the result bus
-            reg sum_valid;
-            reg [2:0] sum_row;
-            reg signed [4*DATA_BITS-1:0] sum_value;
-            // As they come, at 3 (p - 1) + q
-            reg signed [39:0] g_0;
-            reg signed [39:0] g_1;
-            reg signed [39:0] g_2;
-            reg signed [39:0] g_3;
-            reg signed [39:0] g_4;
-            reg signed [39:0] g_5;
-            reg signed [39:0] g_6;
-            reg signed [39:0] g_7;
-            reg signed [39:0] g_8;
-            reg signed [39:0] t_x0;
-            reg signed [39:0] t_x1;
-            reg signed [39:0] t_x2;
-            reg signed [39:0] t_y0;
-            reg signed [39:0] t_y1;
-            reg signed [39:0] t_y2;
-            reg signed [39:0] t_z0;
-            reg signed [39:0] t_z1;
-            reg signed [39:0] t_z2;
-            reg signed [39:0] share_z;
-            reg signed [39:0] share_tx;
-            reg signed [39:0] share_ty;
-            wire [DATA_BITS-1:0] value_0 = sum_value[DATA_BITS*0 +: DATA_BITS];
-            wire [DATA_BITS-1:0] value_1 = sum_value[DATA_BITS*1 +: DATA_BITS];
-            wire [DATA_BITS-1:0] value_2 = sum_value[DATA_BITS*2 +: DATA_BITS];
-            wire [DATA_BITS-1:0] value_3 = sum_value[DATA_BITS*3 +: DATA_BITS];
-            wire signed [39:0] component_0 = {{(40-DATA_BITS){value_0[DATA_BITS-1]}}, value_0};
-            wire signed [39:0] component_1 = {{(40-DATA_BITS){value_1[DATA_BITS-1]}}, value_1};
-            wire signed [39:0] component_2 = {{(40-DATA_BITS){value_2[DATA_BITS-1]}}, value_2};
-            wire signed [39:0] component_3 = {{(40-DATA_BITS){value_3[DATA_BITS-1]}}, value_3};
+    if (CHANNELS == 4) begin : gen_folded
+        // ---- Sums: row q has G_pq, and T_z's, in the component on which it depends, row 4 + q those of T_x and
+        // T_y; row 3 what the weights take from F_z, T_x and T_y
+        reg [2:0] sums_count;
+        // A register on the way from the result bus
+        reg sum_valid;
+        reg [2:0] sum_row;
+        reg signed [4*DATA_BITS-1:0] sum_value;
+        // As they come, at 3 (p - 1) + q
+        reg signed [39:0] g_0;
+        reg signed [39:0] g_1;
+        reg signed [39:0] g_2;
+        reg signed [39:0] g_3;
+        reg signed [39:0] g_4;
+        reg signed [39:0] g_5;
+        reg signed [39:0] g_6;
+        reg signed [39:0] g_7;
+        reg signed [39:0] g_8;
+        reg signed [39:0] t_x0;
+        reg signed [39:0] t_x1;
+        reg signed [39:0] t_x2;
+        reg signed [39:0] t_y0;
+        reg signed [39:0] t_y1;
+        reg signed [39:0] t_y2;
+        reg signed [39:0] t_z0;
+        reg signed [39:0] t_z1;
+        reg signed [39:0] t_z2;
+        reg signed [39:0] share_z;
+        reg signed [39:0] share_tx;
+        reg signed [39:0] share_ty;
+        wire [DATA_BITS-1:0] value_0 = sum_value[DATA_BITS*0 +: DATA_BITS];
+        wire [DATA_BITS-1:0] value_1 = sum_value[DATA_BITS*1 +: DATA_BITS];
+        wire [DATA_BITS-1:0] value_2 = sum_value[DATA_BITS*2 +: DATA_BITS];
+        wire [DATA_BITS-1:0] value_3 = sum_value[DATA_BITS*3 +: DATA_BITS];
+        wire signed [39:0] component_0 = {{(40-DATA_BITS){value_0[DATA_BITS-1]}}, value_0};
+        wire signed [39:0] component_1 = {{(40-DATA_BITS){value_1[DATA_BITS-1]}}, value_1};
+        wire signed [39:0] component_2 = {{(40-DATA_BITS){value_2[DATA_BITS-1]}}, value_2};
+        wire signed [39:0] component_3 = {{(40-DATA_BITS){value_3[DATA_BITS-1]}}, value_3};
 
-            assign sums_there = sum_valid && (sums_count == 3'd6);
-            // Those of f_z for q = 0 less the weights themselves
-            assign sums = {
-                t_z2, t_z1, t_z0, t_y2, t_y1, t_y0 - share_ty, t_x2, t_x1, t_x0 - share_tx,
-                g_8, g_7, g_6 - share_z, g_5, g_4, g_3, g_2, g_1, g_0
-            };
+        assign sums_there = sum_valid && (sums_count == 3'd6);
+        // Those of f_z for q = 0 less the weights themselves
+        assign sums = {
+            t_z2, t_z1, t_z0, t_y2, t_y1, t_y0 - share_ty, t_x2, t_x1, t_x0 - share_tx,
+            g_8, g_7, g_6 - share_z, g_5, g_4, g_3, g_2, g_1, g_0
+        };
 
-            always @(posedge clock) begin
-                sum_valid <= result_g[0];
-                sum_row <= result_row[2:0];
-                sum_value <= result_value;
-                if (sum_valid) begin
-                    sums_count <= (sums_count == 3'd6) ? 3'd0 : sums_count + 3'd1;
-                    case (sum_row)
-                        3'd0: begin
-                            g_0 <= component_1;
-                            g_3 <= component_2;
-                            g_6 <= component_0;
-                            t_z0 <= component_3;
-                        end
-                        3'd1: begin
-                            g_1 <= component_0;
-                            g_4 <= component_3;
-                            g_7 <= component_1;
-                            t_z1 <= component_2;
-                        end
-                        3'd2: begin
-                            g_2 <= component_3;
-                            g_5 <= component_0;
-                            g_8 <= component_2;
-                            t_z2 <= component_1;
-                        end
-                        3'd3: begin
-                            share_z <= component_0;
-                            share_tx <= component_2;
-                            share_ty <= component_1;
-                        end
-                        3'd4: begin
-                            t_x0 <= component_2;
-                            t_y0 <= component_1;
-                        end
-                        3'd5: begin
-                            t_x1 <= component_3;
-                            t_y1 <= component_0;
-                        end
-                        default: begin
-                            t_x2 <= component_0;
-                            t_y2 <= component_3;
-                        end
-                    endcase
-                end
-                if (reset) begin
-                    sum_valid <= 1'b0;
-                    sums_count <= 3'd0;
-                end
+        always @(posedge clock) begin
+            sum_valid <= result_g[0];
+            sum_row <= result_row[2:0];
+            sum_value <= result_value;
+            if (sum_valid) begin
+                sums_count <= (sums_count == 3'd6) ? 3'd0 : sums_count + 3'd1;
+                case (sum_row)
+                    3'd0: begin
+                        g_0 <= component_1;
+                        g_3 <= component_2;
+                        g_6 <= component_0;
+                        t_z0 <= component_3;
+                    end
+                    3'd1: begin
+                        g_1 <= component_0;
+                        g_4 <= component_3;
+                        g_7 <= component_1;
+                        t_z1 <= component_2;
+                    end
+                    3'd2: begin
+                        g_2 <= component_3;
+                        g_5 <= component_0;
+                        g_8 <= component_2;
+                        t_z2 <= component_1;
+                    end
+                    3'd3: begin
+                        share_z <= component_0;
+                        share_tx <= component_2;
+                        share_ty <= component_1;
+                    end
+                    3'd4: begin
+                        t_x0 <= component_2;
+                        t_y0 <= component_1;
+                    end
+                    3'd5: begin
+                        t_x1 <= component_3;
+                        t_y1 <= component_0;
+                    end
+                    default: begin
+                        t_x2 <= component_0;
+                        t_y2 <= component_3;
+                    end
+                endcase
             end
-
-`ifdef SIMULATION
-            // By the schedule a frame's sums are taken before the next ones come
-            always @(posedge clock) begin
-                if (!reset && sum_valid && sums_complete && !sums_take) begin
-                    $fdisplay(32'h80000002, "%m: sums have come while those before are not taken");
-                    $fatal(1);
-                end
+            if (reset) begin
+                sum_valid <= 1'b0;
+                sums_count <= 3'd0;
             end
-`endif
-
-            // ---- What is stored as it comes
-            localparam [31:0] LENGTH = ELEMENTS;
-            wire [31:0] row_wide = {{(32-ROW_WIDTH){1'b0}}, result_row};
-            localparam [47:0] OTHER_BASES = {STORE_BASES[47:32] + RESIDUAL_BANK, STORE_BASES[31:16] + RESIDUAL_BANK,
-                STORE_BASES[15:0] + RESIDUAL_BANK};
-            wire [47:0] bases = residual_bank ? OTHER_BASES : STORE_BASES[47:0];
-            reg [15:0] base;
-            reg stored_valid;
-            reg [OPERAND_WIDTH-1:0] stored_address;
-            reg [4*DATA_BITS-1:0] stored_data;
-
-            always @(*) begin
-                base = STORE_BASES[63:48];
-                if (result_kept[0]) begin
-                    base = bases[15:0];
-                end
-                if (result_kept[1]) begin
-                    base = bases[31:16];
-                end
-                if (result_kept[2]) begin
-                    base = bases[47:32];
-                end
-            end
-
-            assign write_next = (result_kept != 4'd0);
-            assign write_valid = stored_valid;
-            assign write_address = stored_address;
-            assign write_data = stored_data;
-            assign g_valid = 3'd0;
-            assign g_component = {COMPONENT_WIDTH{1'b0}};
-            assign g = {DATA_BITS{1'b0}};
-            assign g_last = 1'b0;
-
-            always @(posedge clock) begin
-                stored_valid <= write_next;
-                stored_address <= base[OPERAND_WIDTH-1:0] + row_wide[OPERAND_WIDTH-1:0];
-                stored_data <= result_value;
-                if (reset) begin
-                    stored_valid <= 1'b0;
-                end
-            end
-
-            wire _unused = &{1'b0, result_g, row_wide, base, bank, LENGTH, STORE_IN_BANK, ROM_DIR == "",
-                ROM_NAME == ""};
-        end else begin : gen_taxels
-            sptfra_coefficients #(
-                .ELEMENTS      (ELEMENTS),
-                .DATA_BITS     (DATA_BITS),
-                .OPERAND_DEPTH (OPERAND_DEPTH),
-                .STORE_BASES   (STORE_BASES),
-                .STORE_IN_BANK (STORE_IN_BANK),
-                .ROM_DIR       (ROM_DIR),
-                .ROM_NAME      (ROM_NAME)
-            ) coefficients (
-                .clock          (clock),
-                .reset          (reset),
-                .result_partial (result_kept[2:0]),
-                .result_g       (result_g),
-                .result_row     (result_row),
-                .result_value   (result_value),
-                .bank           (bank),
-                .write_next     (write_next),
-                .write_valid    (write_valid),
-                .write_address  (write_address),
-                .write_data     (write_data),
-                .g_valid        (g_valid),
-                .g_component    (g_component),
-                .g              (g),
-                .sums_there     (sums_there),
-                .sums           (sums)
-            );
-
-            assign g_last = sums_there;
-            // Here nothing is left of the stress
-            wire _unused = &{1'b0, result_kept[3], residual_bank, RESIDUAL_BANK};
-
-`ifdef SIMULATION
-            // By the schedule a frame's sums are taken before the next ones grow
-            always @(posedge clock) begin
-                if (!reset && (g_valid != 3'd0) && sums_complete && !sums_take) begin
-                    $fdisplay(32'h80000002, "%m: sums have come while those before are not taken");
-                    $fatal(1);
-                end
-            end
-`endif
         end
-    endgenerate
+
+`ifdef SIMULATION
+        // By the schedule a frame's sums are taken before the next ones come
+        always @(posedge clock) begin
+            if (!reset && sum_valid && sums_complete && !sums_take) begin
+                $fdisplay(32'h80000002, "%m: sums have come while those before are not taken");
+                $fatal(1);
+            end
+        end
+`endif
+
+        // ---- What is stored as it comes
+        localparam [31:0] LENGTH = ELEMENTS;
+        wire [31:0] row_wide = {{(32-ROW_WIDTH){1'b0}}, result_row};
+        localparam [47:0] OTHER_BASES = {STORE_BASES[47:32] + RESIDUAL_BANK, STORE_BASES[31:16] + RESIDUAL_BANK,
+            STORE_BASES[15:0] + RESIDUAL_BANK};
+        wire [47:0] bases = residual_bank ? OTHER_BASES : STORE_BASES[47:0];
+        reg [15:0] base;
+        reg stored_valid;
+        reg [OPERAND_WIDTH-1:0] stored_address;
+        reg [4*DATA_BITS-1:0] stored_data;
+
+        always @(*) begin
+            base = STORE_BASES[63:48];
+            if (result_kept[0]) begin
+                base = bases[15:0];
+            end
+            if (result_kept[1]) begin
+                base = bases[31:16];
+            end
+            if (result_kept[2]) begin
+                base = bases[47:32];
+            end
+        end
+
+        assign write_next = (result_kept != 4'd0);
+        assign write_valid = stored_valid;
+        assign write_address = stored_address;
+        assign write_data = stored_data;
+        assign g_valid = 3'd0;
+        assign g_component = {COMPONENT_WIDTH{1'b0}};
+        assign g = {DATA_BITS{1'b0}};
+        assign g_last = 1'b0;
+
+        always @(posedge clock) begin
+            stored_valid <= write_next;
+            stored_address <= base[OPERAND_WIDTH-1:0] + row_wide[OPERAND_WIDTH-1:0];
+            stored_data <= result_value;
+            if (reset) begin
+                stored_valid <= 1'b0;
+            end
+        end
+
+        wire _unused = &{1'b0, result_g, row_wide, base, bank, LENGTH, STORE_IN_BANK, ROM_DIR == "",
+            ROM_NAME == ""};
+    end else begin : gen_taxels
+        sptfra_coefficients #(
+            .ELEMENTS      (ELEMENTS),
+            .DATA_BITS     (DATA_BITS),
+            .OPERAND_DEPTH (OPERAND_DEPTH),
+            .STORE_BASES   (STORE_BASES),
+            .STORE_IN_BANK (STORE_IN_BANK),
+            .ROM_DIR       (ROM_DIR),
+            .ROM_NAME      (ROM_NAME)
+        ) coefficients (
+            .clock          (clock),
+            .reset          (reset),
+            .result_partial (result_kept[2:0]),
+            .result_g       (result_g),
+            .result_row     (result_row),
+            .result_value   (result_value),
+            .bank           (bank),
+            .write_next     (write_next),
+            .write_valid    (write_valid),
+            .write_address  (write_address),
+            .write_data     (write_data),
+            .g_valid        (g_valid),
+            .g_component    (g_component),
+            .g              (g),
+            .sums_there     (sums_there),
+            .sums           (sums)
+        );
+
+        assign g_last = sums_there;
+        // Here nothing is left of the stress
+        wire _unused = &{1'b0, result_kept[3], residual_bank, RESIDUAL_BANK};
+
+`ifdef SIMULATION
+        // By the schedule a frame's sums are taken before the next ones grow
+        always @(posedge clock) begin
+            if (!reset && (g_valid != 3'd0) && sums_complete && !sums_take) begin
+                $fdisplay(32'h80000002, "%m: sums have come while those before are not taken");
+                $fatal(1);
+            end
+        end
+`endif
+    end
 
 endmodule
 

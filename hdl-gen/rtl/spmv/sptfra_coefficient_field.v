@@ -82,74 +82,72 @@ module sptfra_coefficient_field #(
     genvar word;
     genvar q;
     genvar place;
-    generate
-        for (word = 0; word < WORDS; word = word + 1) begin : gen_words
-            wire [3*27-1:0] wide_4;
+    for (word = 0; word < WORDS; word = word + 1) begin : gen_words
+        wire [3*27-1:0] wide_4;
 
-            for (q = 0; q < 3; q = q + 1) begin : gen_memories
-                wire signed [DATA_BITS-1:0] read_2;
-                reg signed [DATA_BITS-1:0] read_3;
-                reg signed [DATA_BITS-1:0] read_4;
+        for (q = 0; q < 3; q = q + 1) begin : gen_memories
+            wire signed [DATA_BITS-1:0] read_2;
+            reg signed [DATA_BITS-1:0] read_3;
+            reg signed [DATA_BITS-1:0] read_4;
 
-                sptfra_ram #(
-                    .WIDTH         (DATA_BITS),
-                    .DEPTH         (2 * COMPONENTS),
-                    .ADDRESS_WIDTH (ADDRESS_WIDTH)
-                ) coefficients (
-                    .clock         (clock),
-                    .write_enable  (g_valid[q] && (write_word == word)),
-                    .write_address (write_address),
-                    .write_data    (g),
-                    .read_enable   (enable),
-                    .read_address  (address_1),
-                    .read_data     (read_2)
-                );
-
-                always @(posedge clock) begin
-                    if (enable) begin
-                        read_3 <= read_2;
-                        read_4 <= read_3;
-                    end
-                end
-
-                for (place = 0; place < 27; place = place + 1) begin : gen_wide
-                    assign wide_4[27*q + place] = read_4[(place < DATA_BITS) ? place : DATA_BITS - 1];
-                end
-            end
-
-            // ---- Stage 5: products; stage 6: the sum, with 16 fraction bits more
-            reg [26:0] g0_5;
-            wire signed [44:0] x_5;
-            wire signed [44:0] y_5;
-            reg signed [63:0] force_6;
-            wire signed [63:0] g0_wide = {{21{g0_5[26]}}, g0_5, 16'd0};
-
-            assign force_value[64*word +: 64] = force_6;
-
-            sptfra_multiply multiplier_x (
-                .clock       (clock),
-                .enable      (enable),
-                .coefficient (mu_x),
-                .data        (wide_4[27*1 +: 27]),
-                .product     (x_5)
-            );
-
-            sptfra_multiply multiplier_y (
-                .clock       (clock),
-                .enable      (enable),
-                .coefficient (mu_y),
-                .data        (wide_4[27*2 +: 27]),
-                .product     (y_5)
+            sptfra_ram #(
+                .WIDTH         (DATA_BITS),
+                .DEPTH         (2 * COMPONENTS),
+                .ADDRESS_WIDTH (ADDRESS_WIDTH)
+            ) coefficients (
+                .clock         (clock),
+                .write_enable  (g_valid[q] && (write_word == word)),
+                .write_address (write_address),
+                .write_data    (g),
+                .read_enable   (enable),
+                .read_address  (address_1),
+                .read_data     (read_2)
             );
 
             always @(posedge clock) begin
                 if (enable) begin
-                    g0_5 <= wide_4[27*0 +: 27];
-                    force_6 <= g0_wide + {{19{x_5[44]}}, x_5} + {{19{y_5[44]}}, y_5};
+                    read_3 <= read_2;
+                    read_4 <= read_3;
                 end
             end
+
+            for (place = 0; place < 27; place = place + 1) begin : gen_wide
+                assign wide_4[27*q + place] = read_4[(place < DATA_BITS) ? place : DATA_BITS - 1];
+            end
         end
-    endgenerate
+
+        // ---- Stage 5: products; stage 6: the sum, with 16 fraction bits more
+        reg [26:0] g0_5;
+        wire signed [44:0] x_5;
+        wire signed [44:0] y_5;
+        reg signed [63:0] force_6;
+        wire signed [63:0] g0_wide = {{21{g0_5[26]}}, g0_5, 16'd0};
+
+        assign force_value[64*word +: 64] = force_6;
+
+        sptfra_multiply multiplier_x (
+            .clock       (clock),
+            .enable      (enable),
+            .coefficient (mu_x),
+            .data        (wide_4[27*1 +: 27]),
+            .product     (x_5)
+        );
+
+        sptfra_multiply multiplier_y (
+            .clock       (clock),
+            .enable      (enable),
+            .coefficient (mu_y),
+            .data        (wide_4[27*2 +: 27]),
+            .product     (y_5)
+        );
+
+        always @(posedge clock) begin
+            if (enable) begin
+                g0_5 <= wide_4[27*0 +: 27];
+                force_6 <= g0_wide + {{19{x_5[44]}}, x_5} + {{19{y_5[44]}}, y_5};
+            end
+        end
+    end
 
     wire _unused = &{1'b0, write_wide, read_wide};
 

@@ -143,24 +143,22 @@ module sptfra_coefficients #(
     end
 
     genvar index;
-    generate
-        for (index = 0; index < 9; index = index + 1) begin : gen_sums
-            reg signed [39:0] sum;
-            reg fresh;
+    for (index = 0; index < 9; index = index + 1) begin : gen_sums
+        reg signed [39:0] sum;
+        reg fresh;
 
-            always @(posedge clock) begin
-                if (is_g_3[index]) begin
-                    sum <= (fresh ? 40'sd0 : sum) + g_wide;
-                    fresh <= 1'b0;
-                end
-                if (reset || sums_there) begin
-                    fresh <= 1'b1;
-                end
+        always @(posedge clock) begin
+            if (is_g_3[index]) begin
+                sum <= (fresh ? 40'sd0 : sum) + g_wide;
+                fresh <= 1'b0;
             end
-
-            assign sums[40*index +: 40] = sum;
+            if (reset || sums_there) begin
+                fresh <= 1'b1;
+            end
         end
-    endgenerate
+
+        assign sums[40*index +: 40] = sum;
+    end
 
     // ---- Torques: g times the arms, rounded to steps of g. Index k: k cycles after the result
     localparam integer ARM_FRACTION = 16;
@@ -194,59 +192,57 @@ module sptfra_coefficients #(
 
     wire signed [39:0] moment_5 [0:1]; // of the arm along x, along y
 
-    generate
-        for (index = 0; index < 2; index = index + 1) begin : gen_moments
-            wire signed [44:0] product_4;
-            reg signed [44:0] rounded_5;
+    for (index = 0; index < 2; index = index + 1) begin : gen_moments
+        wire signed [44:0] product_4;
+        reg signed [44:0] rounded_5;
 
-            sptfra_multiply times_arm (
-                .clock       (clock),
-                .enable      (1'b1),
-                .coefficient (arms[18*index +: 18]),
-                .data        (g_wide[26:0]),
-                .product     (product_4)
-            );
+        sptfra_multiply times_arm (
+            .clock       (clock),
+            .enable      (1'b1),
+            .coefficient (arms[18*index +: 18]),
+            .data        (g_wide[26:0]),
+            .product     (product_4)
+        );
 
-            always @(posedge clock) begin
-                rounded_5 <= product_4 + ARM_HALF;
-            end
-
-            assign moment_5[index] = {{(ARM_FRACTION - 5){rounded_5[44]}}, rounded_5[44:ARM_FRACTION]};
-
-            wire _unused = &{1'b0, rounded_5};
+        always @(posedge clock) begin
+            rounded_5 <= product_4 + ARM_HALF;
         end
-        for (index = 0; index < 3; index = index + 1) begin : gen_torques
-            // T_x: y f_z; T_y: -x f_z; T_z: x f_y - y f_x
-            wire of_x = is_g_5[index];
-            wire of_y = is_g_5[3+index];
-            wire of_z = is_g_5[6+index];
-            reg signed [39:0] torque_x;
-            reg signed [39:0] torque_y;
-            reg signed [39:0] torque_z;
-            reg fresh; // no f_z of the frame yet
-            reg fresh_z; // neither f_x nor f_y
 
-            always @(posedge clock) begin
-                if (of_z) begin
-                    torque_x <= (fresh ? 40'sd0 : torque_x) + moment_5[1];
-                    torque_y <= (fresh ? 40'sd0 : torque_y) - moment_5[0];
-                    fresh <= 1'b0;
-                end
-                if (of_x || of_y) begin
-                    torque_z <= (fresh_z ? 40'sd0 : torque_z) + (of_y ? moment_5[0] : -moment_5[1]);
-                    fresh_z <= 1'b0;
-                end
-                if (reset || sums_there) begin
-                    fresh <= 1'b1;
-                    fresh_z <= 1'b1;
-                end
+        assign moment_5[index] = {{(ARM_FRACTION - 5){rounded_5[44]}}, rounded_5[44:ARM_FRACTION]};
+
+        wire _unused = &{1'b0, rounded_5};
+    end
+    for (index = 0; index < 3; index = index + 1) begin : gen_torques
+        // T_x: y f_z; T_y: -x f_z; T_z: x f_y - y f_x
+        wire of_x = is_g_5[index];
+        wire of_y = is_g_5[3+index];
+        wire of_z = is_g_5[6+index];
+        reg signed [39:0] torque_x;
+        reg signed [39:0] torque_y;
+        reg signed [39:0] torque_z;
+        reg fresh; // no f_z of the frame yet
+        reg fresh_z; // neither f_x nor f_y
+
+        always @(posedge clock) begin
+            if (of_z) begin
+                torque_x <= (fresh ? 40'sd0 : torque_x) + moment_5[1];
+                torque_y <= (fresh ? 40'sd0 : torque_y) - moment_5[0];
+                fresh <= 1'b0;
             end
-
-            assign sums[40*(9+index) +: 40] = torque_x;
-            assign sums[40*(12+index) +: 40] = torque_y;
-            assign sums[40*(15+index) +: 40] = torque_z;
+            if (of_x || of_y) begin
+                torque_z <= (fresh_z ? 40'sd0 : torque_z) + (of_y ? moment_5[0] : -moment_5[1]);
+                fresh_z <= 1'b0;
+            end
+            if (reset || sums_there) begin
+                fresh <= 1'b1;
+                fresh_z <= 1'b1;
+            end
         end
-    endgenerate
+
+        assign sums[40*(9+index) +: 40] = torque_x;
+        assign sums[40*(12+index) +: 40] = torque_y;
+        assign sums[40*(15+index) +: 40] = torque_z;
+    end
 
     wire _unused = &{1'b0, row_wide, stored_row, base};
 

@@ -48,17 +48,15 @@ module sptfra_field #(
     output wire [64*WORDS-1:0] force_value // the first in the lowest bits
 );
 
-    generate
-        if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
-            sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
-        end
-        if ((WORDS != 1) && (WORDS != 2) && (WORDS != 4)) begin : gen_check_words
-            sptfra_error_words_must_be_1_2_or_4 invalid ();
-        end
-        if (DATA_BITS > 35) begin : gen_check_data
-            sptfra_error_data_bits_must_be_up_to_35 invalid ();
-        end
-    endgenerate
+    if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
+        sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
+    end
+    if ((WORDS != 1) && (WORDS != 2) && (WORDS != 4)) begin : gen_check_words
+        sptfra_error_words_must_be_1_2_or_4 invalid ();
+    end
+    if (DATA_BITS > 35) begin : gen_check_data
+        sptfra_error_data_bits_must_be_up_to_35 invalid ();
+    end
 
     localparam FACTOR_BITS = (DATA_BITS > 27) ? 35 : 27;
     localparam PRODUCT_BITS = FACTOR_BITS + 18;
@@ -134,176 +132,172 @@ module sptfra_field #(
     genvar taxel;
     genvar index;
     genvar p_index;
-    generate
-        for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_taxels
-            wire [ROW_WIDTH-1:0] orbit;
-            wire [1:0] image;
-            wire [31:0] read_place = read_base + {{(32-ROW_WIDTH){1'b0}}, orbit};
-            reg [FORCE_WIDTH-1:0] force_address_1;
-            reg [ROW_WIDTH+1:0] weight_address_1;
-            reg [1:0] image_1;
-            reg [1:0] image_2;
-            reg [1:0] image_3;
-            wire [4*DATA_BITS-1:0] weights_2;
-            reg [4*DATA_BITS-1:0] weights_3;
-            reg [DATA_BITS-1:0] chosen_4;
+    for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_taxels
+        wire [ROW_WIDTH-1:0] orbit;
+        wire [1:0] image;
+        wire [31:0] read_place = read_base + {{(32-ROW_WIDTH){1'b0}}, orbit};
+        reg [FORCE_WIDTH-1:0] force_address_1;
+        reg [ROW_WIDTH+1:0] weight_address_1;
+        reg [1:0] image_1;
+        reg [1:0] image_2;
+        reg [1:0] image_3;
+        wire [4*DATA_BITS-1:0] weights_2;
+        reg [4*DATA_BITS-1:0] weights_3;
+        reg [DATA_BITS-1:0] chosen_4;
 
-            assign weight_4[taxel] = chosen_4;
+        assign weight_4[taxel] = chosen_4;
 
-            sptfra_taxel_walk #(
-                .COLUMNS (COLUMNS),
-                .ROWS    (ROWS),
-                .FIRST   (taxel)
-            ) walk (
-                .clock  (clock),
-                .rewind (rewind),
-                .step   (step),
-                .taxels (moves),
-                .orbit  (orbit),
-                .image  (image)
+        sptfra_taxel_walk #(
+            .COLUMNS (COLUMNS),
+            .ROWS    (ROWS),
+            .FIRST   (taxel)
+        ) walk (
+            .clock  (clock),
+            .rewind (rewind),
+            .step   (step),
+            .taxels (moves),
+            .orbit  (orbit),
+            .image  (image)
+        );
+
+        always @(posedge clock) begin
+            if (enable) begin
+                force_address_1 <= read_place[FORCE_WIDTH-1:0];
+                weight_address_1 <= {weight_read_bank, orbit};
+                image_1 <= image;
+                image_2 <= image_1;
+                image_3 <= image_2;
+                weights_3 <= weights_2;
+                chosen_4 <= weights_3[DATA_BITS*image_3 +: DATA_BITS];
+            end
+        end
+
+        for (index = 0; index < 4; index = index + 1) begin : gen_weights
+            sptfra_ram #(
+                .WIDTH         (DATA_BITS),
+                .DEPTH         (4 << ROW_WIDTH),
+                .ADDRESS_WIDTH (ROW_WIDTH + 2)
+            ) orbit_weights (
+                .clock         (clock),
+                .write_enable  (weights_valid),
+                .write_address ({weight_fill_bank, weights_row}),
+                .write_data    (weights[DATA_BITS*index +: DATA_BITS]),
+                .read_enable   (enable),
+                .read_address  (weight_address_1),
+                .read_data     (weights_2[DATA_BITS*index +: DATA_BITS])
             );
+        end
+
+        for (p_index = 0; p_index < FORCES; p_index = p_index + 1) begin : gen_forces
+            wire [4*DATA_BITS-1:0] forces_2;
+            reg [4*DATA_BITS-1:0] forces_3;
+            reg [DATA_BITS-1:0] force_4;
+
+            assign forces_4[taxel][DATA_BITS*p_index +: DATA_BITS] = force_4;
 
             always @(posedge clock) begin
                 if (enable) begin
-                    force_address_1 <= read_place[FORCE_WIDTH-1:0];
-                    weight_address_1 <= {weight_read_bank, orbit};
-                    image_1 <= image;
-                    image_2 <= image_1;
-                    image_3 <= image_2;
-                    weights_3 <= weights_2;
-                    chosen_4 <= weights_3[DATA_BITS*image_3 +: DATA_BITS];
+                    forces_3 <= forces_2;
+                    force_4 <= forces_3[DATA_BITS*image_3 +: DATA_BITS];
                 end
             end
 
-            for (index = 0; index < 4; index = index + 1) begin : gen_weights
+            for (index = 0; index < 4; index = index + 1) begin : gen_images
                 sptfra_ram #(
                     .WIDTH         (DATA_BITS),
-                    .DEPTH         (4 << ROW_WIDTH),
-                    .ADDRESS_WIDTH (ROW_WIDTH + 2)
-                ) orbit_weights (
+                    .DEPTH         (2 * BANK),
+                    .ADDRESS_WIDTH (FORCE_WIDTH)
+                ) orbit_forces (
                     .clock         (clock),
-                    .write_enable  (weights_valid),
-                    .write_address ({weight_fill_bank, weights_row}),
-                    .write_data    (weights[DATA_BITS*index +: DATA_BITS]),
+                    .write_enable  ((FORCES == 1) ? is_force : taxel_force[p_index]),
+                    .write_address (write_place[FORCE_WIDTH-1:0]),
+                    .write_data    (taxels[DATA_BITS*index +: DATA_BITS]),
                     .read_enable   (enable),
-                    .read_address  (weight_address_1),
-                    .read_data     (weights_2[DATA_BITS*index +: DATA_BITS])
+                    .read_address  (force_address_1),
+                    .read_data     (forces_2[DATA_BITS*index +: DATA_BITS])
                 );
             end
-
-            for (p_index = 0; p_index < FORCES; p_index = p_index + 1) begin : gen_forces
-                wire [4*DATA_BITS-1:0] forces_2;
-                reg [4*DATA_BITS-1:0] forces_3;
-                reg [DATA_BITS-1:0] force_4;
-
-                assign forces_4[taxel][DATA_BITS*p_index +: DATA_BITS] = force_4;
-
-                always @(posedge clock) begin
-                    if (enable) begin
-                        forces_3 <= forces_2;
-                        force_4 <= forces_3[DATA_BITS*image_3 +: DATA_BITS];
-                    end
-                end
-
-                for (index = 0; index < 4; index = index + 1) begin : gen_images
-                    sptfra_ram #(
-                        .WIDTH         (DATA_BITS),
-                        .DEPTH         (2 * BANK),
-                        .ADDRESS_WIDTH (FORCE_WIDTH)
-                    ) orbit_forces (
-                        .clock         (clock),
-                        .write_enable  ((FORCES == 1) ? is_force : taxel_force[p_index]),
-                        .write_address (write_place[FORCE_WIDTH-1:0]),
-                        .write_data    (taxels[DATA_BITS*index +: DATA_BITS]),
-                        .read_enable   (enable),
-                        .read_address  (force_address_1),
-                        .read_data     (forces_2[DATA_BITS*index +: DATA_BITS])
-                    );
-                end
-            end
-
-            wire _unused = &{1'b0, read_place};
         end
-    endgenerate
+
+        wire _unused = &{1'b0, read_place};
+    end
 
     // ---- Index a: chosen, which several words take a stage for; b: the weight's share of it, and both; c: the force
     genvar word;
     genvar place;
-    generate
-        for (word = 0; word < WORDS; word = word + 1) begin : gen_words
-            wire [1:0] component; // a cycle before a
-            wire signed [DATA_BITS-1:0] weight_a;
-            wire signed [DATA_BITS-1:0] force_a;
-            reg signed [17:0] share_a;
-            reg signed [DATA_BITS-1:0] force_b;
-            reg signed [63:0] force_c;
-            wire signed [FACTOR_BITS-1:0] weight_wide;
-            wire signed [PRODUCT_BITS-1:0] product_b;
-            wire signed [63:0] force_wide = {{(64-DATA_BITS){force_b[DATA_BITS-1]}}, force_b};
-            wire signed [63:0] product = {{(64-PRODUCT_BITS){product_b[PRODUCT_BITS-1]}}, product_b};
+    for (word = 0; word < WORDS; word = word + 1) begin : gen_words
+        wire [1:0] component; // a cycle before a
+        wire signed [DATA_BITS-1:0] weight_a;
+        wire signed [DATA_BITS-1:0] force_a;
+        reg signed [17:0] share_a;
+        reg signed [DATA_BITS-1:0] force_b;
+        reg signed [63:0] force_c;
+        wire signed [FACTOR_BITS-1:0] weight_wide;
+        wire signed [PRODUCT_BITS-1:0] product_b;
+        wire signed [63:0] force_wide = {{(64-DATA_BITS){force_b[DATA_BITS-1]}}, force_b};
+        wire signed [63:0] product = {{(64-PRODUCT_BITS){product_b[PRODUCT_BITS-1]}}, product_b};
 
-            assign force_value[64*word +: 64] = force_c;
+        assign force_value[64*word +: 64] = force_c;
 
-            if (WORDS == 1) begin : gen_only
-                assign component = p_3;
-                assign weight_a = weight_4[0];
-                assign force_a = forces_4[0];
+        if (WORDS == 1) begin : gen_only
+            assign component = p_3;
+            assign weight_a = weight_4[0];
+            assign force_a = forces_4[0];
 
-                wire _unused = &{1'b0, p_4};
-            end else begin : gen_choice
-                localparam [2:0] PLACE = word;
-                wire [2:0] place_4 = {1'b0, p_4} + PLACE;
-                wire second_4 = (place_4 > 3'd2); // of the taxel after the first
-                wire [2:0] component_4 = second_4 ? place_4 - 3'd3 : place_4;
-                wire [3*DATA_BITS-1:0] of_taxel_4 = second_4 ? forces_4[TAXELS-1] : forces_4[0];
-                reg signed [DATA_BITS-1:0] weight_5;
-                reg signed [DATA_BITS-1:0] force_5;
+            wire _unused = &{1'b0, p_4};
+        end else begin : gen_choice
+            localparam [2:0] PLACE = word;
+            wire [2:0] place_4 = {1'b0, p_4} + PLACE;
+            wire second_4 = (place_4 > 3'd2); // of the taxel after the first
+            wire [2:0] component_4 = second_4 ? place_4 - 3'd3 : place_4;
+            wire [3*DATA_BITS-1:0] of_taxel_4 = second_4 ? forces_4[TAXELS-1] : forces_4[0];
+            reg signed [DATA_BITS-1:0] weight_5;
+            reg signed [DATA_BITS-1:0] force_5;
 
-                assign component = component_4[1:0];
-                assign weight_a = weight_5;
-                assign force_a = force_5;
-
-                always @(posedge clock) begin
-                    if (enable) begin
-                        weight_5 <= second_4 ? weight_4[TAXELS-1] : weight_4[0];
-                        case (component)
-                            2'd0: force_5 <= of_taxel_4[DATA_BITS*0 +: DATA_BITS];
-                            2'd1: force_5 <= of_taxel_4[DATA_BITS*1 +: DATA_BITS];
-                            default: force_5 <= of_taxel_4[DATA_BITS*2 +: DATA_BITS];
-                        endcase
-                    end
-                end
-
-                wire _unused = &{1'b0, component_4[2]};
-            end
-
-            for (place = 0; place < FACTOR_BITS; place = place + 1) begin : gen_weight
-                assign weight_wide[place] = weight_a[(place < DATA_BITS) ? place : DATA_BITS - 1];
-            end
-
-            sptfra_multiply #(
-                .WIDE (DATA_BITS > 27)
-            ) multiplier (
-                .clock       (clock),
-                .enable      (enable),
-                .coefficient (share_a),
-                .data        (weight_wide),
-                .product     (product_b)
-            );
+            assign component = component_4[1:0];
+            assign weight_a = weight_5;
+            assign force_a = force_5;
 
             always @(posedge clock) begin
                 if (enable) begin
+                    weight_5 <= second_4 ? weight_4[TAXELS-1] : weight_4[0];
                     case (component)
-                        2'd0: share_a <= mu_x;
-                        2'd1: share_a <= mu_y;
-                        default: share_a <= -ONE;
+                        2'd0: force_5 <= of_taxel_4[DATA_BITS*0 +: DATA_BITS];
+                        2'd1: force_5 <= of_taxel_4[DATA_BITS*1 +: DATA_BITS];
+                        default: force_5 <= of_taxel_4[DATA_BITS*2 +: DATA_BITS];
                     endcase
-                    force_b <= force_a;
-                    force_c <= (force_wide <<< FORCE_SHIFT) + (product <<< SHARE_SHIFT);
                 end
             end
+
+            wire _unused = &{1'b0, component_4[2]};
         end
-    endgenerate
+
+        for (place = 0; place < FACTOR_BITS; place = place + 1) begin : gen_weight
+            assign weight_wide[place] = weight_a[(place < DATA_BITS) ? place : DATA_BITS - 1];
+        end
+
+        sptfra_multiply #(
+            .WIDE (DATA_BITS > 27)
+        ) multiplier (
+            .clock       (clock),
+            .enable      (enable),
+            .coefficient (share_a),
+            .data        (weight_wide),
+            .product     (product_b)
+        );
+
+        always @(posedge clock) begin
+            if (enable) begin
+                case (component)
+                    2'd0: share_a <= mu_x;
+                    2'd1: share_a <= mu_y;
+                    default: share_a <= -ONE;
+                endcase
+                force_b <= force_a;
+                force_c <= (force_wide <<< FORCE_SHIFT) + (product <<< SHARE_SHIFT);
+            end
+        end
+    end
 
     wire _unused = &{1'b0, write_place};
 

@@ -36,14 +36,12 @@ module sptfra_program_scheduler #(
     output wire field_bank // of the residual whose field was
 );
 
-    generate
-        if ((PROGRAMS < 1) || (PROGRAMS > 3)) begin : gen_check_programs
-            sptfra_error_programs_must_be_1_to_3 invalid ();
-        end
-        if ((RESIDUALS < 1) || (RESIDUALS > 2)) begin : gen_check_residuals
-            sptfra_error_one_or_two_residuals_have_a_buffer invalid ();
-        end
-    endgenerate
+    if ((PROGRAMS < 1) || (PROGRAMS > 3)) begin : gen_check_programs
+        sptfra_error_programs_must_be_1_to_3 invalid ();
+    end
+    if ((RESIDUALS < 1) || (RESIDUALS > 2)) begin : gen_check_residuals
+        sptfra_error_one_or_two_residuals_have_a_buffer invalid ();
+    end
 
     reg busy;
     // Frames started whose u_q has a buffer: two at most. A release comes from afar and is counted a cycle later
@@ -79,58 +77,56 @@ module sptfra_program_scheduler #(
         end
     end
 
-    generate
-        if (PROGRAMS == 3) begin : gen_field
-            reg residual_due; // started, but for its second program
-            reg [1:0] fields_due; // frames whose second program is started, but for their third
-            reg [1:0] residuals_there; // of them
-            reg next_residual_bank;
-            reg next_field_bank;
-            reg [1:0] fields_held; // field started and not released: two at most
+    if (PROGRAMS == 3) begin : gen_field
+        reg residual_due; // started, but for its second program
+        reg [1:0] fields_due; // frames whose second program is started, but for their third
+        reg [1:0] residuals_there; // of them
+        reg next_residual_bank;
+        reg next_field_bank;
+        reg [1:0] fields_held; // field started and not released: two at most
 
-            wire give_field = free && may_field;
-            wire give_residual = free && !may_field && may_residual;
+        wire give_field = free && may_field;
+        wire give_residual = free && !may_field && may_residual;
 
-            assign may_field = (residuals_there != 2'd0) && friction_known && (fields_held != 2'd2);
-            assign may_residual = residual_due && (fields_due != RESIDUALS[1:0]);
-            assign field_waits = residual_due || ((INTERVAL == 0) && (fields_due != 2'd0));
-            assign residual_bank = (RESIDUALS > 1) && next_residual_bank;
-            assign field_bank = (RESIDUALS > 1) && next_field_bank;
+        assign may_field = (residuals_there != 2'd0) && friction_known && (fields_held != 2'd2);
+        assign may_residual = residual_due && (fields_due != RESIDUALS[1:0]);
+        assign field_waits = residual_due || ((INTERVAL == 0) && (fields_due != 2'd0));
+        assign residual_bank = (RESIDUALS > 1) && next_residual_bank;
+        assign field_bank = (RESIDUALS > 1) && next_field_bank;
 
-            always @(posedge clock) begin
-                start[2] <= give_field;
-                start[1] <= give_residual;
-                if (give_field) begin
-                    next_field_bank <= !next_field_bank;
-                end
-                if (give_residual) begin
-                    residual_due <= 1'b0;
-                    next_residual_bank <= !next_residual_bank;
-                end else if (free && !may_field && may_frame) begin
-                    residual_due <= 1'b1;
-                end
-                fields_due <= fields_due + {1'b0, give_residual} - {1'b0, give_field};
-                residuals_there <= residuals_there + {1'b0, residual_written} - {1'b0, give_field};
-                fields_held <= fields_held + {1'b0, start[2]} - {1'b0, frame_released};
-                if (reset) begin
-                    start[2:1] <= 2'd0;
-                    residual_due <= 1'b0;
-                    fields_due <= 2'd0;
-                    residuals_there <= 2'd0;
-                    next_residual_bank <= 1'b0;
-                    next_field_bank <= 1'b0;
-                    fields_held <= 2'd0;
-                end
+        always @(posedge clock) begin
+            start[2] <= give_field;
+            start[1] <= give_residual;
+            if (give_field) begin
+                next_field_bank <= !next_field_bank;
             end
-        end else begin : gen_one_program
-            assign may_field = 1'b0;
-            assign may_residual = 1'b0;
-            assign field_waits = 1'b0;
-            assign residual_bank = 1'b0;
-            assign field_bank = 1'b0;
-            wire _unused = &{1'b0, residual_written, friction_known};
+            if (give_residual) begin
+                residual_due <= 1'b0;
+                next_residual_bank <= !next_residual_bank;
+            end else if (free && !may_field && may_frame) begin
+                residual_due <= 1'b1;
+            end
+            fields_due <= fields_due + {1'b0, give_residual} - {1'b0, give_field};
+            residuals_there <= residuals_there + {1'b0, residual_written} - {1'b0, give_field};
+            fields_held <= fields_held + {1'b0, start[2]} - {1'b0, frame_released};
+            if (reset) begin
+                start[2:1] <= 2'd0;
+                residual_due <= 1'b0;
+                fields_due <= 2'd0;
+                residuals_there <= 2'd0;
+                next_residual_bank <= 1'b0;
+                next_field_bank <= 1'b0;
+                fields_held <= 2'd0;
+            end
         end
-    endgenerate
+    end else begin : gen_one_program
+        assign may_field = 1'b0;
+        assign may_residual = 1'b0;
+        assign field_waits = 1'b0;
+        assign residual_bank = 1'b0;
+        assign field_bank = 1'b0;
+        wire _unused = &{1'b0, residual_written, friction_known};
+    end
 
 endmodule
 

@@ -83,17 +83,15 @@ module sptfra_spmv_array #(
     output wire result_last // of its program
 );
 
-    generate
-        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
-            sptfra_error_channels_must_be_1_or_4 invalid ();
-        end
-        if ((PES < 1) || (PES > 128)) begin : gen_check_pes
-            sptfra_error_pes_must_be_1_to_128 invalid ();
-        end
-        if ((DESTINATION_BITS != 3) && (DESTINATION_BITS != 4)) begin : gen_check_destinations
-            sptfra_error_a_destination_has_3_or_4_bits invalid ();
-        end
-    endgenerate
+    if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
+        sptfra_error_channels_must_be_1_or_4 invalid ();
+    end
+    if ((PES < 1) || (PES > 128)) begin : gen_check_pes
+        sptfra_error_pes_must_be_1_to_128 invalid ();
+    end
+    if ((DESTINATION_BITS != 3) && (DESTINATION_BITS != 4)) begin : gen_check_destinations
+        sptfra_error_a_destination_has_3_or_4_bits invalid ();
+    end
     localparam WORD_WIDTH = (WORD_DEPTH > 2) ? $clog2(WORD_DEPTH) : 1;
     localparam SLOT_WIDTH = (SLOT_DEPTH > 2) ? $clog2(SLOT_DEPTH) : 1;
 
@@ -205,52 +203,50 @@ module sptfra_spmv_array #(
     wire [PES-1:0] take;
 
     genvar index;
-    generate
-        for (index = 0; index < PES; index = index + 1) begin : gen_pes
-            localparam [NUMBER_BITS-1:0] NUMBER = PE_NUMBERS[NUMBER_BITS*index +: NUMBER_BITS];
-            localparam [7:0] NEXT = (index + 1) % PES;
+    for (index = 0; index < PES; index = index + 1) begin : gen_pes
+        localparam [NUMBER_BITS-1:0] NUMBER = PE_NUMBERS[NUMBER_BITS*index +: NUMBER_BITS];
+        localparam [7:0] NEXT = (index + 1) % PES;
 
-            sptfra_spmv_pe #(
-                .CHANNELS         (CHANNELS),
-                .COEFFICIENT_BITS (COEFFICIENT_BITS),
-                .DATA_BITS        (DATA_BITS),
-                .ELEMENTS         (ELEMENTS),
-                .VECTORS          (VECTORS),
-                .WORD_DEPTH       (WORD_DEPTH),
-                .SEGMENT_DEPTH    (SEGMENT_DEPTH),
-                .OPERAND_DEPTH    (OPERAND_DEPTH),
-                .MIRROR_SIDE      (MIRROR_SIDE),
-                .FRICTION         (FRICTIONS != {PRODUCTS{1'b0}}),
-                .ROM_DIR          (ROM_DIR),
-                .VALUES_FILE      ((ROM_NAME == "") ? "" : {ROM_NAME, "_values_pe", NUMBER, ".mem"}),
-                .COLUMNS_FILE     ((ROM_NAME == "") ? "" : {ROM_NAME, "_columns_pe", NUMBER, ".mem"}),
-                .MACS_FILE        ((ROM_NAME == "") ? "" : {ROM_NAME, "_macs_pe", NUMBER, ".mem"})
-            ) pe (
-                .clock           (clock),
-                .reset           (reset),
-                .restart         (restart),
-                .start_word      (start_word),
-                .restart_segment (restart_segment),
-                .start_segment   (start_segment),
-                .issue           (issue),
-                .mark            (mark),
-                .rewind          (rewind),
-                .base            (base),
-                .mirrored        (mirrored),
-                .friction        (friction),
-                .mu_x            (mu_x),
-                .mu_y            (mu_y),
-                .write_enable    (operand_write),
-                .write_address   (operand_address),
-                .write_data      (operand_data),
-                .next_carry      (carries[48*CHANNELS*NEXT +: 48*CHANNELS]),
-                .carry           (carries[48*CHANNELS*index +: 48*CHANNELS]),
-                .result          (results[48*CHANNELS*index +: 48*CHANNELS]),
-                .pending         (pending[index]),
-                .take            (take[index])
-            );
-        end
-    endgenerate
+        sptfra_spmv_pe #(
+            .CHANNELS         (CHANNELS),
+            .COEFFICIENT_BITS (COEFFICIENT_BITS),
+            .DATA_BITS        (DATA_BITS),
+            .ELEMENTS         (ELEMENTS),
+            .VECTORS          (VECTORS),
+            .WORD_DEPTH       (WORD_DEPTH),
+            .SEGMENT_DEPTH    (SEGMENT_DEPTH),
+            .OPERAND_DEPTH    (OPERAND_DEPTH),
+            .MIRROR_SIDE      (MIRROR_SIDE),
+            .FRICTION         (FRICTIONS != {PRODUCTS{1'b0}}),
+            .ROM_DIR          (ROM_DIR),
+            .VALUES_FILE      ((ROM_NAME == "") ? "" : {ROM_NAME, "_values_pe", NUMBER, ".mem"}),
+            .COLUMNS_FILE     ((ROM_NAME == "") ? "" : {ROM_NAME, "_columns_pe", NUMBER, ".mem"}),
+            .MACS_FILE        ((ROM_NAME == "") ? "" : {ROM_NAME, "_macs_pe", NUMBER, ".mem"})
+        ) pe (
+            .clock           (clock),
+            .reset           (reset),
+            .restart         (restart),
+            .start_word      (start_word),
+            .restart_segment (restart_segment),
+            .start_segment   (start_segment),
+            .issue           (issue),
+            .mark            (mark),
+            .rewind          (rewind),
+            .base            (base),
+            .mirrored        (mirrored),
+            .friction        (friction),
+            .mu_x            (mu_x),
+            .mu_y            (mu_y),
+            .write_enable    (operand_write),
+            .write_address   (operand_address),
+            .write_data      (operand_data),
+            .next_carry      (carries[48*CHANNELS*NEXT +: 48*CHANNELS]),
+            .carry           (carries[48*CHANNELS*index +: 48*CHANNELS]),
+            .result          (results[48*CHANNELS*index +: 48*CHANNELS]),
+            .pending         (pending[index]),
+            .take            (take[index])
+        );
+    end
 
     sptfra_spmv_collector #(
         .PES              (PES),

@@ -66,17 +66,15 @@ module sptfra_spmv_collector #(
     output reg  result_last // of its program
 );
 
-    generate
-        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
-            sptfra_error_channels_must_be_1_or_4 invalid ();
-        end
-        if ((DESTINATION_BITS != 3) && (DESTINATION_BITS != 4)) begin : gen_check_destination
-            sptfra_error_a_destination_has_3_or_4_bits invalid ();
-        end
-        if ((MIRROR != 0) && (CHANNELS != 4)) begin : gen_check_mirror
-            sptfra_error_only_four_channels_are_mirrored invalid ();
-        end
-    endgenerate
+    if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
+        sptfra_error_channels_must_be_1_or_4 invalid ();
+    end
+    if ((DESTINATION_BITS != 3) && (DESTINATION_BITS != 4)) begin : gen_check_destination
+        sptfra_error_a_destination_has_3_or_4_bits invalid ();
+    end
+    if ((MIRROR != 0) && (CHANNELS != 4)) begin : gen_check_mirror
+        sptfra_error_only_four_channels_are_mirrored invalid ();
+    end
 
     // The least or the largest of SHIFTS
     function integer extreme(input integer largest);
@@ -172,15 +170,13 @@ module sptfra_spmv_collector #(
     end
 
     genvar index;
-    generate
-        for (index = 0; index < PES; index = index + 1) begin : gen_select
-            always @(posedge clock) begin
-                if (fetch) begin
-                    select[index] <= (PES == 1) || (slot[DESTINATION_BITS+ROW_WIDTH +: PE_WIDTH] == index);
-                end
+    for (index = 0; index < PES; index = index + 1) begin : gen_select
+        always @(posedge clock) begin
+            if (fetch) begin
+                select[index] <= (PES == 1) || (slot[DESTINATION_BITS+ROW_WIDTH +: PE_WIDTH] == index);
             end
         end
-    endgenerate
+    end
 
 `ifdef SIMULATION
     // By the schedule a program's first slot is reached before the next program begins
@@ -200,11 +196,9 @@ module sptfra_spmv_collector #(
     reg [5:0] taken_shift;
     reg [ROW_WIDTH-1:0] taken_row;
 
-    generate
-        for (index = 0; index < PES; index = index + 1) begin : gen_results
-            assign result_of[index] = results[48*CHANNELS*index +: 48*CHANNELS];
-        end
-    endgenerate
+    for (index = 0; index < PES; index = index + 1) begin : gen_results
+        assign result_of[index] = results[48*CHANNELS*index +: 48*CHANNELS];
+    end
 
     assign take = select & pending & {PES{may_take}};
 
@@ -231,20 +225,18 @@ module sptfra_spmv_collector #(
     wire [CHANNELS*DATA_BITS-1:0] rounded;
     wire _unused_more = &{1'b0, taken_more};
 
-    generate
-        for (index = 0; index < CHANNELS; index = index + 1) begin : gen_channels
-            reg [47:0] sum;
-            wire [111+DATA_BITS:0] wide = { {(64 + DATA_BITS){sum[47]}}, sum};
-            wire [SPREAD_BITS-1:0] spread = wide[LEAST_SHIFT +: SPREAD_BITS] >> sum_more;
+    for (index = 0; index < CHANNELS; index = index + 1) begin : gen_channels
+        reg [47:0] sum;
+        wire [111+DATA_BITS:0] wide = { {(64 + DATA_BITS){sum[47]}}, sum};
+        wire [SPREAD_BITS-1:0] spread = wide[LEAST_SHIFT +: SPREAD_BITS] >> sum_more;
 
-            always @(posedge clock) begin
-                sum <= taken[48*index +: 48] + half;
-            end
-
-            assign rounded[DATA_BITS*index +: DATA_BITS] = spread[DATA_BITS-1:0];
-            wire _unused = &{1'b0, wide, spread};
+        always @(posedge clock) begin
+            sum <= taken[48*index +: 48] + half;
         end
-    endgenerate
+
+        assign rounded[DATA_BITS*index +: DATA_BITS] = spread[DATA_BITS-1:0];
+        wire _unused = &{1'b0, wide, spread};
+    end
 
     // ---- Bus: the components from the channels that computed them
     wire odd_x = (sum_destination == U1[DESTINATION_BITS-1:0]) || ((DESTINATION_BITS == 4)
@@ -280,39 +272,37 @@ module sptfra_spmv_collector #(
 
     assign {result_u, result_y} = route[3:0];
 
-    generate
-        if (CHANNELS == 4) begin : gen_components
-            assign {result_force, result_kept} = route[11:5];
-            assign result_g = {8'd0, route[4]};
-            wire _unused = &{1'b0, route[15:12]};
+    if (CHANNELS == 4) begin : gen_components
+        assign {result_force, result_kept} = route[11:5];
+        assign result_g = {8'd0, route[4]};
+        wire _unused = &{1'b0, route[15:12]};
 
-            wire [DATA_BITS-1:0] channel_0 = rounded[DATA_BITS*0 +: DATA_BITS];
-            wire [DATA_BITS-1:0] channel_1 = rounded[DATA_BITS*1 +: DATA_BITS];
-            wire [DATA_BITS-1:0] channel_2 = rounded[DATA_BITS*2 +: DATA_BITS];
-            wire [DATA_BITS-1:0] channel_3 = rounded[DATA_BITS*3 +: DATA_BITS];
+        wire [DATA_BITS-1:0] channel_0 = rounded[DATA_BITS*0 +: DATA_BITS];
+        wire [DATA_BITS-1:0] channel_1 = rounded[DATA_BITS*1 +: DATA_BITS];
+        wire [DATA_BITS-1:0] channel_2 = rounded[DATA_BITS*2 +: DATA_BITS];
+        wire [DATA_BITS-1:0] channel_3 = rounded[DATA_BITS*3 +: DATA_BITS];
 
-            always @(posedge clock) begin
-                if (odd_x) begin
-                    result_value <= {channel_2, channel_3, channel_0, channel_1};
-                end else if (odd_y && (MIRROR != 0)) begin
-                    result_value <= {channel_2, channel_0, channel_3, channel_1};
-                end else if (odd_y) begin
-                    result_value <= {channel_1, channel_0, channel_3, channel_2};
-                end else begin
-                    result_value <= rounded;
-                end
-            end
-        end else begin : gen_taxels
-            assign result_g = route[15:7];
-            assign result_kept = {1'b0, route[6:4]};
-            assign result_force = 3'd0;
-
-            always @(posedge clock) begin
+        always @(posedge clock) begin
+            if (odd_x) begin
+                result_value <= {channel_2, channel_3, channel_0, channel_1};
+            end else if (odd_y && (MIRROR != 0)) begin
+                result_value <= {channel_2, channel_0, channel_3, channel_1};
+            end else if (odd_y) begin
+                result_value <= {channel_1, channel_0, channel_3, channel_2};
+            end else begin
                 result_value <= rounded;
             end
-            wire _unused = &{1'b0, odd_x, odd_y};
         end
-    endgenerate
+    end else begin : gen_taxels
+        assign result_g = route[15:7];
+        assign result_kept = {1'b0, route[6:4]};
+        assign result_force = 3'd0;
+
+        always @(posedge clock) begin
+            result_value <= rounded;
+        end
+        wire _unused = &{1'b0, odd_x, odd_y};
+    end
 
 endmodule
 

@@ -37,11 +37,9 @@ module sptfra_spmv_lane #(
     output reg  [47:0] result
 );
 
-    generate
-        if ((COEFFICIENT_BITS > 27) || (DATA_BITS > 35)) begin : gen_check_factors
-            sptfra_error_two_multipliers_have_27_by_35_bits invalid ();
-        end
-    endgenerate
+    if ((COEFFICIENT_BITS > 27) || (DATA_BITS > 35)) begin : gen_check_factors
+        sptfra_error_two_multipliers_have_27_by_35_bits invalid ();
+    end
 
     localparam WIDE = (COEFFICIENT_BITS > 18) || (DATA_BITS > 27);
     localparam LEFT_BITS = WIDE ? 27 : 18;
@@ -59,26 +57,24 @@ module sptfra_spmv_lane #(
     reg  signed [17:0] chosen;
     wire [47:0] accumulator;
     genvar place;
-    generate
-        for (place = 0; place < LEFT_BITS; place = place + 1) begin : gen_left
-            localparam OF_COEFFICIENT = place - COEFFICIENT_PLACE;
+    for (place = 0; place < LEFT_BITS; place = place + 1) begin : gen_left
+        localparam OF_COEFFICIENT = place - COEFFICIENT_PLACE;
 
-            if (OF_COEFFICIENT < 0) begin : gen_below
-                assign own[place] = 1'b0;
-            end else begin : gen_own
-                assign own[place] = coefficient[(OF_COEFFICIENT < COEFFICIENT_BITS) ? OF_COEFFICIENT
-                    : COEFFICIENT_BITS - 1];
-            end
-            if (place < FRICTION_PLACE) begin : gen_below_component
-                assign component[place] = 1'b0;
-            end else begin : gen_component
-                assign component[place] = chosen[place-FRICTION_PLACE];
-            end
+        if (OF_COEFFICIENT < 0) begin : gen_below
+            assign own[place] = 1'b0;
+        end else begin : gen_own
+            assign own[place] = coefficient[(OF_COEFFICIENT < COEFFICIENT_BITS) ? OF_COEFFICIENT
+                : COEFFICIENT_BITS - 1];
         end
-        for (place = 0; place < RIGHT_BITS; place = place + 1) begin : gen_right
-            assign right[place] = operand[(place < DATA_BITS) ? place : DATA_BITS - 1];
+        if (place < FRICTION_PLACE) begin : gen_below_component
+            assign component[place] = 1'b0;
+        end else begin : gen_component
+            assign component[place] = chosen[place-FRICTION_PLACE];
         end
-    endgenerate
+    end
+    for (place = 0; place < RIGHT_BITS; place = place + 1) begin : gen_right
+        assign right[place] = operand[(place < DATA_BITS) ? place : DATA_BITS - 1];
+    end
 
     always @(*) begin
         case (coefficient[1:0])

@@ -66,14 +66,12 @@ module sptfra_spmv_pe #(
     input  wire take
 );
 
-    generate
-        if (OPERAND_DEPTH < VECTORS * ELEMENTS) begin : gen_check_operands
-            sptfra_error_the_operand_memory_does_not_hold_its_vectors invalid ();
-        end
-        if ((MIRROR_SIDE > 0) && (MIRROR_SIDE * MIRROR_SIDE != ELEMENTS)) begin : gen_check_mirror
-            sptfra_error_only_a_square_grid_is_mirrored invalid ();
-        end
-    endgenerate
+    if (OPERAND_DEPTH < VECTORS * ELEMENTS) begin : gen_check_operands
+        sptfra_error_the_operand_memory_does_not_hold_its_vectors invalid ();
+    end
+    if ((MIRROR_SIDE > 0) && (MIRROR_SIDE * MIRROR_SIDE != ELEMENTS)) begin : gen_check_mirror
+        sptfra_error_only_a_square_grid_is_mirrored invalid ();
+    end
 
     localparam COLUMN_WIDTH = (VECTORS * ELEMENTS > 2) ? $clog2(VECTORS * ELEMENTS) : 1;
     localparam SEGMENT_WIDTH = (SEGMENT_DEPTH > 2) ? $clog2(SEGMENT_DEPTH) : 1;
@@ -189,18 +187,16 @@ module sptfra_spmv_pe #(
 
     assign element = mirrored ? {{(32-ROW_WIDTH){1'b0}}, mirror_image} : column_wide;
 
-    generate
-        if ((MIRROR_SIDE == (1 << MIRROR_HALF)) && (ROW_WIDTH == 2 * MIRROR_HALF)) begin : gen_exchange
-            // Row and column change places
-            assign mirror_image = {column_wide[MIRROR_HALF-1:0], column_wide[2*MIRROR_HALF-1:MIRROR_HALF]};
-        end else if (MIRROR_SIDE > 0) begin : gen_images
-            localparam [ORBITS*ROW_WIDTH-1:0] IMAGES = images(MIRROR_SIDE);
+    if ((MIRROR_SIDE == (1 << MIRROR_HALF)) && (ROW_WIDTH == 2 * MIRROR_HALF)) begin : gen_exchange
+        // Row and column change places
+        assign mirror_image = {column_wide[MIRROR_HALF-1:0], column_wide[2*MIRROR_HALF-1:MIRROR_HALF]};
+    end else if (MIRROR_SIDE > 0) begin : gen_images
+        localparam [ORBITS*ROW_WIDTH-1:0] IMAGES = images(MIRROR_SIDE);
 
-            assign mirror_image = IMAGES[ROW_WIDTH*column_wide[ROW_WIDTH-1:0] +: ROW_WIDTH];
-        end else begin : gen_no_mirror
-            assign mirror_image = {ROW_WIDTH{1'b0}};
-        end
-    endgenerate
+        assign mirror_image = IMAGES[ROW_WIDTH*column_wide[ROW_WIDTH-1:0] +: ROW_WIDTH];
+    end else begin : gen_no_mirror
+        assign mirror_image = {ROW_WIDTH{1'b0}};
+    end
 
     sptfra_ram #(
         .WIDTH         (CHANNELS * DATA_BITS),
@@ -273,37 +269,35 @@ module sptfra_spmv_pe #(
 `endif
 
     genvar channel;
-    generate
-        for (channel = 0; channel < CHANNELS; channel = channel + 1) begin : gen_channels
-            // With the diagonal mirror channels 1 and 2 change places
-            localparam OTHER = (CHANNELS == 1) ? 0 : (channel == 1) ? 2 : (channel == 2) ? 1 : channel;
+    for (channel = 0; channel < CHANNELS; channel = channel + 1) begin : gen_channels
+        // With the diagonal mirror channels 1 and 2 change places
+        localparam OTHER = (CHANNELS == 1) ? 0 : (channel == 1) ? 2 : (channel == 2) ? 1 : channel;
 
-            sptfra_spmv_lane #(
-                .COEFFICIENT_BITS (COEFFICIENT_BITS),
-                .DATA_BITS        (DATA_BITS),
-                .FRICTION         (FRICTION)
-            ) of_channel (
-                .clock       (clock),
-                .reset       (reset),
-                .valid       (mac_valid[3]),
-                .first       (mac_first[3]),
-                .coefficient (coefficient[COEFFICIENT_BITS*channel +: COEFFICIENT_BITS]),
-                .operand     (((MIRROR_SIDE > 0) && swaps[3]) ? operand[DATA_BITS*OTHER +: DATA_BITS]
-                    : operand[DATA_BITS*channel +: DATA_BITS]),
-                .friction    (friction),
-                .mu_x        (mu_x),
-                .mu_y        (mu_y),
-                .tail_ends   (tail_ends[6]),
-                .result_ends (result_ends[6]),
-                .is_head     (is_head[6]),
-                .no_other    (kept == 2'd0),
-                .take        (take),
-                .next_carry  (next_carry[48*channel +: 48]),
-                .carry       (carry[48*channel +: 48]),
-                .result      (result[48*channel +: 48])
-            );
-        end
-    endgenerate
+        sptfra_spmv_lane #(
+            .COEFFICIENT_BITS (COEFFICIENT_BITS),
+            .DATA_BITS        (DATA_BITS),
+            .FRICTION         (FRICTION)
+        ) of_channel (
+            .clock       (clock),
+            .reset       (reset),
+            .valid       (mac_valid[3]),
+            .first       (mac_first[3]),
+            .coefficient (coefficient[COEFFICIENT_BITS*channel +: COEFFICIENT_BITS]),
+            .operand     (((MIRROR_SIDE > 0) && swaps[3]) ? operand[DATA_BITS*OTHER +: DATA_BITS]
+                : operand[DATA_BITS*channel +: DATA_BITS]),
+            .friction    (friction),
+            .mu_x        (mu_x),
+            .mu_y        (mu_y),
+            .tail_ends   (tail_ends[6]),
+            .result_ends (result_ends[6]),
+            .is_head     (is_head[6]),
+            .no_other    (kept == 2'd0),
+            .take        (take),
+            .next_carry  (next_carry[48*channel +: 48]),
+            .carry       (carry[48*channel +: 48]),
+            .result      (result[48*channel +: 48])
+        );
+    end
 
     wire _unused = &{1'b0, segment_address, column_wide, element, swaps};
 

@@ -69,14 +69,12 @@ module sptfra_spmv_sequencer #(
     output wire friction // three cycles after its issue: friction components are the coefficients
 );
 
-    generate
-        if ((PROGRAMS < 1) || (PROGRAMS > 3)) begin : gen_check_programs
-            sptfra_error_programs_must_be_1_to_3 invalid ();
-        end
-        if (!LASTS[PRODUCTS-1]) begin : gen_check_last
-            sptfra_error_the_last_product_must_end_its_program invalid ();
-        end
-    endgenerate
+    if ((PROGRAMS < 1) || (PROGRAMS > 3)) begin : gen_check_programs
+        sptfra_error_programs_must_be_1_to_3 invalid ();
+    end
+    if (!LASTS[PRODUCTS-1]) begin : gen_check_last
+        sptfra_error_the_last_product_must_end_its_program invalid ();
+    end
 
     localparam PRODUCT_WIDTH = (PRODUCTS > 2) ? $clog2(PRODUCTS) : 1;
     localparam [1:0] IDLE = 2'd0, WAIT = 2'd1, RUN = 2'd2;

@@ -46,11 +46,9 @@ module sptfra_unfold #(
     output wire coefficients_complete // one cycle, with the last u: the stress of this frame is done with
 );
 
-    generate
-        if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
-            sptfra_error_channels_must_be_1_or_4 invalid ();
-        end
-    endgenerate
+    if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
+        sptfra_error_channels_must_be_1_or_4 invalid ();
+    end
 
     // ---- What a value is, beside it on its way: stage k holds what was on the bus k cycles ago
     localparam LATENCY = (CHANNELS == 4) ? 5 : 1; // from the result bus to taxels, which simulations check
@@ -96,95 +94,93 @@ module sptfra_unfold #(
         .done  (routes[7*(STAGES-1) +: 7] != 7'd0)
     );
 
-    generate
-        if (CHANNELS == 4) begin : gen_components
-            // ---- Stage 1: the stress of the orbit. The bank changes when a frame's last u has passed
-            reg bank;
-            reg [4*DATA_BITS-1:0] value_1;
-            wire [4*DATA_BITS-1:0] stress_1;
-            wire is_u0_1 = routes[1];
+    if (CHANNELS == 4) begin : gen_components
+        // ---- Stage 1: the stress of the orbit. The bank changes when a frame's last u has passed
+        reg bank;
+        reg [4*DATA_BITS-1:0] value_1;
+        wire [4*DATA_BITS-1:0] stress_1;
+        wire is_u0_1 = routes[1];
 
-            sptfra_ram #(
-                .WIDTH         (4 * DATA_BITS),
-                .DEPTH         (2 << ROW_WIDTH),
-                .ADDRESS_WIDTH (ROW_WIDTH + 1)
-            ) stress (
-                .clock         (clock),
-                .write_enable  (stress_write),
-                .write_address ({stress_write_bank, stress_write_row}),
-                .write_data    (stress_write_data),
-                .read_enable   (1'b1),
-                .read_address  ({bank, result_row}),
-                .read_data     (stress_1)
-            );
+        sptfra_ram #(
+            .WIDTH         (4 * DATA_BITS),
+            .DEPTH         (2 << ROW_WIDTH),
+            .ADDRESS_WIDTH (ROW_WIDTH + 1)
+        ) stress (
+            .clock         (clock),
+            .write_enable  (stress_write),
+            .write_address ({stress_write_bank, stress_write_row}),
+            .write_data    (stress_write_data),
+            .read_enable   (1'b1),
+            .read_address  ({bank, result_row}),
+            .read_data     (stress_1)
+        );
 
-            always @(posedge clock) begin
-                value_1 <= result_value;
-                if (last_u) begin
-                    bank <= !bank;
-                end
-                if (reset) begin
-                    bank <= 1'b0;
-                end
+        always @(posedge clock) begin
+            value_1 <= result_value;
+            if (last_u) begin
+                bank <= !bank;
             end
-
-            // ---- Stages 2 and 3: the stress at the step of u, added. Stages 4 and 5: mirror in x, mirror in y
-            wire [4*DATA_BITS-1:0] component_3;
-            genvar index;
-
-            for (index = 0; index < 4; index = index + 1) begin : gen_component
-                localparam DROP = (U_SHIFT > 0) ? U_SHIFT : 0;
-                localparam RISE = (U_SHIFT < 0) ? -U_SHIFT : 0;
-                wire signed [DATA_BITS-1:0] own_stress = stress_1[DATA_BITS*index +: DATA_BITS];
-                wire signed [DATA_BITS-1:0] scaled = (own_stress >>> DROP) <<< RISE;
-                wire half = (U_SHIFT > 0) && own_stress[(U_SHIFT > 0) ? U_SHIFT - 1 : 0];
-                reg signed [DATA_BITS-1:0] addend_2;
-                reg half_2;
-                reg signed [DATA_BITS-1:0] value_2;
-                reg signed [DATA_BITS-1:0] value_3;
-                // The rounding comes in as a carry: no adder stands right behind the memory
-                wire [DATA_BITS:0] sum = {value_2, 1'b1} + {addend_2, half_2};
-                wire _unused_carry = &{1'b0, sum[0]};
-
-                always @(posedge clock) begin
-                    addend_2 <= is_u0_1 ? scaled : {DATA_BITS{1'b0}};
-                    half_2 <= is_u0_1 && half;
-                    value_2 <= value_1[DATA_BITS*index +: DATA_BITS];
-                    value_3 <= sum[DATA_BITS:1];
-                end
-
-                assign component_3[DATA_BITS*index +: DATA_BITS] = value_3;
+            if (reset) begin
+                bank <= 1'b0;
             end
-
-            // The bits above are copies of the sign
-            wire [4*DATA_BITS+7:0] wide;
-
-            sptfra_butterfly #(
-                .WIDTH (DATA_BITS)
-            ) butterfly (
-                .clock  (clock),
-                .enable (1'b1),
-                .values (component_3),
-                .sums   (wide)
-            );
-
-            for (index = 0; index < 4; index = index + 1) begin : gen_images
-                assign taxels[DATA_BITS*index +: DATA_BITS] = wide[(DATA_BITS+2)*index +: DATA_BITS];
-            end
-
-            wire _unused = &{1'b0, wide};
-        end else begin : gen_taxels
-            reg [CHANNELS*DATA_BITS-1:0] value_1;
-
-            assign taxels = value_1;
-
-            always @(posedge clock) begin
-                value_1 <= result_value;
-            end
-
-            wire _unused = &{1'b0, stress_write, stress_write_bank, stress_write_row, stress_write_data};
         end
-    endgenerate
+
+        // ---- Stages 2 and 3: the stress at the step of u, added. Stages 4 and 5: mirror in x, mirror in y
+        wire [4*DATA_BITS-1:0] component_3;
+        genvar index;
+
+        for (index = 0; index < 4; index = index + 1) begin : gen_component
+            localparam DROP = (U_SHIFT > 0) ? U_SHIFT : 0;
+            localparam RISE = (U_SHIFT < 0) ? -U_SHIFT : 0;
+            wire signed [DATA_BITS-1:0] own_stress = stress_1[DATA_BITS*index +: DATA_BITS];
+            wire signed [DATA_BITS-1:0] scaled = (own_stress >>> DROP) <<< RISE;
+            wire half = (U_SHIFT > 0) && own_stress[(U_SHIFT > 0) ? U_SHIFT - 1 : 0];
+            reg signed [DATA_BITS-1:0] addend_2;
+            reg half_2;
+            reg signed [DATA_BITS-1:0] value_2;
+            reg signed [DATA_BITS-1:0] value_3;
+            // The rounding comes in as a carry: no adder stands right behind the memory
+            wire [DATA_BITS:0] sum = {value_2, 1'b1} + {addend_2, half_2};
+            wire _unused_carry = &{1'b0, sum[0]};
+
+            always @(posedge clock) begin
+                addend_2 <= is_u0_1 ? scaled : {DATA_BITS{1'b0}};
+                half_2 <= is_u0_1 && half;
+                value_2 <= value_1[DATA_BITS*index +: DATA_BITS];
+                value_3 <= sum[DATA_BITS:1];
+            end
+
+            assign component_3[DATA_BITS*index +: DATA_BITS] = value_3;
+        end
+
+        // The bits above are copies of the sign
+        wire [4*DATA_BITS+7:0] wide;
+
+        sptfra_butterfly #(
+            .WIDTH (DATA_BITS)
+        ) butterfly (
+            .clock  (clock),
+            .enable (1'b1),
+            .values (component_3),
+            .sums   (wide)
+        );
+
+        for (index = 0; index < 4; index = index + 1) begin : gen_images
+            assign taxels[DATA_BITS*index +: DATA_BITS] = wide[(DATA_BITS+2)*index +: DATA_BITS];
+        end
+
+        wire _unused = &{1'b0, wide};
+    end else begin : gen_taxels
+        reg [CHANNELS*DATA_BITS-1:0] value_1;
+
+        assign taxels = value_1;
+
+        always @(posedge clock) begin
+            value_1 <= result_value;
+        end
+
+        wire _unused = &{1'b0, stress_write, stress_write_bank, stress_write_row, stress_write_data};
+    end
 
 endmodule
 
