@@ -221,7 +221,7 @@ fn the_page_needs_nothing_else() {
         "prefers-color-scheme: dark",
         "Scene push",
         "4 frames",
-        "recommended: no filter",
+        "recommended: F1 L = 10, reduced plan",
         "finds the expected error of",
     ] {
         assert!(page.contains(part), "{part}");

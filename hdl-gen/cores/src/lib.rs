@@ -14,7 +14,6 @@ mod section;
 mod sint;
 
 mod cordic;
-mod divider;
 mod fixed_to_float;
 mod float_to_fixed;
 mod row_sequencer;
@@ -54,7 +53,7 @@ pub enum CoreError {
 /// # Errors
 /// [`CoreError`] if a description does not translate; a test sees to it that none is released like that.
 pub fn print_all() -> Result<Vec<CoreFile>, CoreError> {
-    [row_sequencer::core, divider::core, cordic::core, float_to_fixed::core, fixed_to_float::core]
+    [row_sequencer::core, cordic::core, float_to_fixed::core, fixed_to_float::core]
         .into_iter()
         .map(|core| core())
         .collect()

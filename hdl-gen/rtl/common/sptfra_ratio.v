@@ -10,7 +10,7 @@
 
 module sptfra_ratio #(
     // Bits of numerators and denominator, all of them not negative
-    parameter integer WIDTH = 48,
+    parameter integer WIDTH = 40,
     // A numerator is below 2^INTEGER_BITS denominators
     parameter integer INTEGER_BITS = 6,
     // Bits of a quotient

@@ -3,8 +3,8 @@
 //
 // Centroids of compression and tension, and the direction of the push d = c - t (Eq. 24), as a vector.
 //
-// Stresses come in as magnitudes. done follows the last one after 9 cycles and two divisions. d is there in the next
-// cycle. Centroids have 20 fraction bits of a taxel index; d the same, in units of the larger pitch.
+// Stresses come in as magnitudes. done follows the last one after 9 cycles and two divisions of 28 cycles. d is there
+// in the next cycle. Centroids have 20 fraction bits of a taxel index; d the same, in units of the larger pitch.
 
 `default_nettype none
 
@@ -36,6 +36,8 @@ module sptfra_direction #(
 );
 
     localparam integer CENTROID_FRACTION = 20;
+    localparam integer INDEX_BITS = 6; // of a taxel's column or row
+    localparam integer CENTROID_BITS = INDEX_BITS + CENTROID_FRACTION;
     localparam integer PITCH_FRACTION = 16;
     localparam signed [47:0] PITCH_HALF = 48'sd1 <<< (PITCH_FRACTION - 1);
     localparam integer X_WIDTH = (COLUMNS <= 2) ? 1 : $clog2(COLUMNS);
@@ -161,7 +163,7 @@ module sptfra_direction #(
         end
     end
 
-    // ---- After the last stress: two divisions for each axis, a product each
+    // ---- After the last stress: a division of both sums for c, then t; two products
     localparam [1:0] IDLE = 2'd0, SETTLE = 2'd1, DIVIDE = 2'd2, SCALE = 2'd3;
 
     reg [1:0] state;
@@ -169,38 +171,30 @@ module sptfra_direction #(
     reg [2:0] step;
     reg divide_start;
 
-    wire [47:0] sum_x = of_tension ? tension_x : compression_x;
-    wire [47:0] sum_y = of_tension ? tension_y : compression_y;
-    wire [47:0] weight = of_tension ? tension : compression;
-    wire [63:0] quotient_x;
-    wire [63:0] quotient_y;
+    wire [CENTROID_BITS-1:0] quotient_x;
+    wire [CENTROID_BITS-1:0] quotient_y;
     wire divide_done;
-    wire divide_done_y; // at the same time
 
-    sptfra_divider divider_x (
+    sptfra_ratio #(
+        .WIDTH        (48),
+        .INTEGER_BITS (INDEX_BITS),
+        .BITS         (CENTROID_BITS)
+    ) ratio (
         .clock       (clock),
         .reset       (reset),
         .start       (divide_start),
-        .numerator   ({sum_x[63-CENTROID_FRACTION:0], {CENTROID_FRACTION{1'b0}}}),
-        .denominator (weight),
-        .quotient    (quotient_x),
-        .done        (divide_done)
-    );
-
-    sptfra_divider divider_y (
-        .clock       (clock),
-        .reset       (reset),
-        .start       (divide_start),
-        .numerator   ({sum_y[63-CENTROID_FRACTION:0], {CENTROID_FRACTION{1'b0}}}),
-        .denominator (weight),
-        .quotient    (quotient_y),
-        .done        (divide_done_y)
+        .numerator_x (of_tension ? tension_x : compression_x),
+        .numerator_y (of_tension ? tension_y : compression_y),
+        .denominator (of_tension ? tension : compression),
+        .done        (divide_done),
+        .quotient_x  (quotient_x),
+        .quotient_y  (quotient_y)
     );
 
     reg signed [26:0] difference_x; // first c, then c - t
     reg signed [26:0] difference_y;
-    wire signed [26:0] centroid_x = {1'b0, quotient_x[25:0]};
-    wire signed [26:0] centroid_y = {1'b0, quotient_y[25:0]};
+    wire signed [26:0] centroid_x = {1'b0, quotient_x};
+    wire signed [26:0] centroid_y = {1'b0, quotient_y};
     wire signed [47:0] scaled;
     wire signed [47:0] rounded = scaled + PITCH_HALF;
 
@@ -261,8 +255,8 @@ module sptfra_direction #(
         end
     end
 
-    // The quotient of a centroid has at most 25 bits, the scaled difference at most 43
-    wire _unused = &{1'b0, sum_x, sum_y, quotient_x, quotient_y, divide_done_y, rounded};
+    // The scaled difference has at most 43 bits
+    wire _unused = &{1'b0, rounded};
 
 endmodule
 

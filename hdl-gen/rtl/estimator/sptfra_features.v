@@ -61,7 +61,6 @@ module sptfra_features #(
     localparam integer ORBITS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2);
     localparam integer SUM_BITS = 40;
     localparam integer RECIPROCAL_BITS = 16;
-    localparam [63:0] NUMERATOR = 64'd1 << (SUM_BITS + RECIPROCAL_BITS);
 
     // ---- Scale, of the frame that is searched: sum |b|, its leading bit at the top
     wire [5:0] found_bits;
@@ -82,20 +81,27 @@ module sptfra_features #(
     // ---- Its reciprocal; then of the frame whose features are computed
     reg inverting;
     wire divide_done;
-    wire [63:0] quotient;
+    wire [RECIPROCAL_BITS+1:0] quotient;
+    wire [RECIPROCAL_BITS+1:0] no_quotient;
     wire invert = (prepare == 3'd6);
     reg signed [17:0] next_reciprocal; // 2^-(16 + sum_bits) a step
     reg [5:0] sum_bits;
     reg signed [17:0] reciprocal;
 
-    sptfra_divider divider (
+    sptfra_ratio #(
+        .WIDTH        (SUM_BITS),
+        .INTEGER_BITS (1),
+        .BITS         (RECIPROCAL_BITS + 2)
+    ) inverse (
         .clock       (clock),
         .reset       (reset),
         .start       (invert),
-        .numerator   (NUMERATOR),
-        .denominator ({8'd0, normalised}),
-        .quotient    (quotient),
-        .done        (divide_done)
+        .numerator_x ({1'b1, {(SUM_BITS - 1){1'b0}}}),
+        .numerator_y ({SUM_BITS{1'b0}}),
+        .denominator (normalised),
+        .done        (divide_done),
+        .quotient_x  (quotient),
+        .quotient_y  (no_quotient)
     );
 
     always @(posedge clock) begin
@@ -114,7 +120,7 @@ module sptfra_features #(
         end
         if (divide_done && inverting) begin
             inverting <= 1'b0;
-            next_reciprocal <= (quotient[63:17] == 47'd0) ? {1'b0, quotient[16:0]} : 18'sd131071;
+            next_reciprocal <= quotient[17] ? 18'sd131071 : {1'b0, quotient[16:0]};
         end
         if (features_start) begin
             sum_bits <= next_sum_bits;
@@ -238,6 +244,8 @@ module sptfra_features #(
         .start (features_start),
         .done  (features_done)
     );
+
+    wire _unused = &{1'b0, no_quotient};
 
 endmodule
 

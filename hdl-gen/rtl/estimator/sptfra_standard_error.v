@@ -7,7 +7,7 @@
 // Noise that is alike in all frames has a typical contact's LARGEST, scaled as the frame is, in place of largest.
 // |x, y| is max(x, y, 7/8 of the larger + 1/2 of the smaller). No multiplier: each bit of a quotient adds its weight.
 // The noise left is the root of the variance; its bits, as they are found, add up NOISE. Without averages it is 1.
-// Latency: 55 cycles from start to the result, which holds until the next start.
+// Latency: 56 cycles from start to the result, which holds until the next start.
 
 `default_nettype none
 
@@ -33,21 +33,23 @@ module sptfra_standard_error #(
     output reg  signed [17:0] error_log // of base 2, from -10 to 2, 12 fraction bits: n + f for 2^n (1 + f)
 );
 
-    localparam [5:0] BORDER_END = 6'd17, NOISE_END = 6'd34, ADD = 6'd35, CLIP = 6'd41, LAST = 6'd53;
+    localparam [5:0] BORDER_END = 6'd18, NOISE_END = 6'd35, ADD = 6'd36, CLIP = 6'd42, LAST = 6'd54;
     localparam [17:0] LEAST = 18'd64; // 2^-10
     localparam [22:0] MOST = 23'd262143; // just below 4
 
     reg busy;
     reg [5:0] step;
-    // ---- Two quotients, the border's first, a bit a cycle: remainder, and the sum of the weights
+    // ---- Two quotients, the border's first, a bit a cycle, without restoring: a remainder's sign is the bit, and says
+    // whether the divisor is added or subtracted next
     reg [39:0] divisor;
-    reg [40:0] remainder;
+    reg [40:0] part; // the dividend
+    reg [41:0] remainder;
     wire [40:0] peak; // below twice the divisor
     wire [16:0] noise; // its weight in this frame
-    reg [33:0] sum;
-    wire [41:0] less = {1'b0, remainder} - {2'b00, divisor};
-    wire fits = !less[41];
-    wire [40:0] kept = fits ? less[40:0] : remainder;
+    reg [33:0] sum; // of the weights
+    wire first = (step == 6'd1) || (step == BORDER_END);
+    wire [41:0] shifted = first ? {1'b0, part} : {remainder[40:0], 1'b0};
+    wire fits = !remainder[41];
     wire [16:0] weight = (step > BORDER_END) ? noise : BORDER;
     wire [33:0] next_sum = {sum[32:0], 1'b0} + (fits ? {17'd0, weight} : 34'd0);
     wire [39:0] allowed = {5'd0, divisor[39:5]};
@@ -56,13 +58,16 @@ module sptfra_standard_error #(
     wire [22:0] by_noise;
     if (LARGEST != 23'd0) begin : gen_typical
         reg [53:0] scaled;
-        wire [40:0] most = {divisor, 1'b0} - 41'd1;
+        reg [40:0] most;
+        reg too_large;
 
-        assign peak = (scaled > {13'd0, most}) ? most : scaled[40:0];
+        assign peak = too_large ? most : scaled[40:0];
         // A quotient of sixteenths; 64 |F_z| are as good as more
         assign by_noise = (next_sum[33:31] != 3'd0) ? 23'h3fffff : {1'b0, next_sum[30:9]};
 
         always @(posedge clock) begin
+            most <= {divisor, 1'b0} - 41'd1;
+            too_large <= (scaled > {13'd0, most});
             if (start) begin
                 scaled <= {31'd0, LARGEST} << frame_exponent;
             end
@@ -103,20 +108,16 @@ module sptfra_standard_error #(
             busy <= 1'b1;
             step <= 6'd0;
             divisor <= stress_sum;
-            remainder <= {1'b0, border};
+            part <= {1'b0, border};
             total <= {5'd0, MODEL};
         end else if (busy) begin
             step <= step + 6'd1;
-            remainder <= {kept[39:0], 1'b0};
+            part <= (step != 6'd0) ? peak : (part[39:0] > allowed) ? part - {1'b0, allowed} : 41'd0;
+            remainder <= (first || fits) ? shifted - {2'b00, divisor} : shifted + {2'b00, divisor};
             sum <= next_sum;
-            if (step == 6'd0) begin
-                remainder <= (remainder[39:0] > allowed) ? remainder - {1'b0, allowed} : 41'd0;
-                sum <= 34'd0;
-            end
-            if (step == BORDER_END) begin
+            if (first) begin
                 share_border <= {2'd0, next_sum[33:13]};
                 sum <= 34'd0;
-                remainder <= peak;
             end
             if (step == NOISE_END) begin
                 share_noise <= by_noise;
@@ -177,7 +178,7 @@ module sptfra_standard_error #(
         wire _unused_variance = &{1'b0, variance};
     end
 
-    wire _unused = &{1'b0, mantissa[4:0], kept[40], sum[33], smaller[0]};
+    wire _unused = &{1'b0, mantissa[4:0], sum[33], smaller[0]};
 
 endmodule
 

@@ -7,9 +7,9 @@
 
 pub mod axis_skid;
 pub mod cordic;
-pub mod divider;
 pub mod fixed_to_float;
 pub mod float_to_fixed;
+pub mod ratio;
 pub mod row_sequencer;
 
 /// Width of the shorter operand of a multiplier, as in one DSP48E2.

@@ -1,6 +1,6 @@
 //! Op's summary in integers: friction components, resultants, friction coefficient, angle.
 
-use crate::cores::{cordic, divider};
+use crate::cores::{cordic, ratio};
 use crate::format::FRICTION_FRACTION;
 use golden::estimators::ERROR_FRACTION;
 use golden::products::ByPq;
@@ -42,7 +42,7 @@ impl Summary {
             0
         } else {
             let unit = ((u128::from(normal) << (64 - normal_bits)) >> 32) as u64;
-            divider::divide((tangential.magnitude & ((1 << 38) - 1)) << 26, unit)
+            ratio::divide((tangential.magnitude & ((1 << 38) - 1)) << 26, unit)
         };
         Self {
             friction,

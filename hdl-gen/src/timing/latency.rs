@@ -6,7 +6,7 @@
 
 use golden::sensor::Sensor;
 
-use crate::cores::{axis_skid, cordic, float_to_fixed};
+use crate::cores::{axis_skid, cordic, float_to_fixed, ratio};
 
 // ---- Intake
 /// What the ingress FIFO takes more than the skid buffer in its place: a memory is written, then read.
@@ -127,9 +127,7 @@ pub const TAXELS_TO_FIELD: u64 = 2;
 /// From the end of the search to the friction being known to the lanes.
 pub const SEARCH_TO_FRICTION: u64 = 9;
 /// From the answer's taking to the end of the summary.
-pub const SUMMARY_LATENCY: u64 = 37 + cordic::LATENCY as u64 + QUOTIENT;
-/// Of its division, for 33 bits of the quotient.
-const QUOTIENT: u64 = 34;
+pub const SUMMARY_LATENCY: u64 = 37 + cordic::LATENCY as u64 + ratio::latency(33);
 /// From the start of the output to the first beat leaving Op.
 pub const OUTPUT_LATENCY: u64 = 13;
 /// From a beat leaving Op to its leaving the core.
@@ -141,4 +139,4 @@ pub const OUTPUT_TO_IDLE: u64 = 4;
 
 // ---- The estimator
 /// From a start to the result of `sptfra_standard_error`, which begins with the search.
-pub const STANDARD_ERROR: u64 = 55;
+pub const STANDARD_ERROR: u64 = 56;

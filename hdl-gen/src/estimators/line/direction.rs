@@ -1,8 +1,8 @@
 //! `CeAn` of the line search in integers: centroids of compression and tension, direction of the push (Eq. 24, as a vector).
 
 use super::super::Inputs;
-use super::{CENTROID_FRACTION, PITCH_FRACTION};
-use crate::cores::divider;
+use super::{CENTROID_BITS, CENTROID_FRACTION, PITCH_FRACTION};
+use crate::cores::ratio;
 use crate::format::round_shift;
 
 /// The direction of push of a frame.
@@ -47,9 +47,9 @@ impl Moments {
         moments
     }
 
-    /// The hardware keeps 26 bits of the quotient; only a division by zero, whose frame has no direction, has more.
+    /// Only a division by zero, whose frame has no direction, has more than [`CENTROID_BITS`].
     fn centroid(&self, axis: usize) -> i64 {
-        let quotient = divider::divide((self.by_axis[axis] as u64) << CENTROID_FRACTION, self.sum as u64);
-        (quotient & ((1 << 26) - 1)) as i64
+        let quotient = ratio::divide((self.by_axis[axis] as u64) << CENTROID_FRACTION, self.sum as u64);
+        (quotient & ((1 << CENTROID_BITS) - 1)) as i64
     }
 }

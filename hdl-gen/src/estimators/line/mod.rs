@@ -18,6 +18,8 @@ use crate::timing::durations::Stage;
 
 /// Fraction bits of a centroid, in units of the taxel index.
 pub const CENTROID_FRACTION: u32 = 20;
+/// Bits of a centroid, six of them for the whole index.
+pub const CENTROID_BITS: u32 = 6 + CENTROID_FRACTION;
 /// Fraction bits of the pitch ratios that turn index differences into lengths.
 pub const PITCH_FRACTION: u32 = 16;
 /// Fraction bits of the line's offset c0 and slope c1; two integer bits and a sign go with them.

@@ -5,7 +5,7 @@ use golden::products::ByPq;
 use super::super::{Estimate, Inputs};
 use super::direction::Direction;
 use super::{LINE_FRACTION, LINE_SUM_BITS, LinePlan, RECTIFIER_DROP, SEARCH_STEPS};
-use crate::cores::{LONG_BITS, divider};
+use crate::cores::{LONG_BITS, ratio};
 use crate::format::{FRICTION_BITS, FRICTION_FRACTION, largest, round_shift};
 
 /// Ratios of this magnitude (4.0) and more make the line meaningless.
@@ -46,7 +46,7 @@ impl Line {
 
 /// `numerator / denominator` towards zero, with [`LINE_FRACTION`] fraction bits; none if it is 4 or more.
 fn ratio(numerator: i64, denominator: i64) -> Option<i64> {
-    let quotient = divider::divide(numerator.unsigned_abs() << LINE_FRACTION, denominator.unsigned_abs());
+    let quotient = ratio::divide(numerator.unsigned_abs() << LINE_FRACTION, denominator.unsigned_abs());
     let magnitude = (quotient < WILD).then_some(quotient as i64)?;
     Some(if (numerator < 0) == (denominator < 0) { magnitude } else { -magnitude })
 }

@@ -1,12 +1,12 @@
 //! Cycles of the line search's modules: counts of the emitted pipelines, exact.
 
-use super::{LINE_FRACTION, LinePlan, SEARCH_STEPS};
-use crate::cores::divider;
+use super::{CENTROID_BITS, LINE_FRACTION, LinePlan, SEARCH_STEPS};
+use crate::cores::ratio;
 
 /// From the last write of a frame to its direction: two divisions, each for both axes, and two products.
-pub const DIRECTION_LATENCY: u64 = 10 + 2 * (divider::LATENCY as u64 + 1);
-/// From the line's start to its end: products, then both divisions at a time, a cycle for each bit of a quotient and one.
-pub const LINE_LATENCY: u64 = 18 + LINE_FRACTION as u64 + 2 + 1;
+pub const DIRECTION_LATENCY: u64 = 10 + 2 * (ratio::latency(CENTROID_BITS) + 1);
+/// From the line's start to its end: products, then both divisions at a time.
+pub const LINE_LATENCY: u64 = 18 + ratio::latency(LINE_FRACTION + 2);
 
 /// Rounds of the search for the minimum, and for each end of the level set.
 pub fn rounds(of: &LinePlan) -> u64 {

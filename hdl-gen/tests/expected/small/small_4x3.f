@@ -9,7 +9,6 @@ rtl/sptfra_co.v
 rtl/sptfra_context_field.v
 rtl/sptfra_cordic.v
 rtl/sptfra_direction.v
-rtl/sptfra_divider.v
 rtl/sptfra_estimator_line.v
 rtl/sptfra_field.v
 rtl/sptfra_fixed_to_float.v

@@ -127,7 +127,7 @@ pub fn cores() -> Vec<(String, String)> {
     let common = [
         "sptfra_axis_skid",
         "sptfra_row_sequencer",
-        "sptfra_divider",
+        "sptfra_ratio",
         "sptfra_cordic",
         "sptfra_float_to_fixed",
         "sptfra_fixed_to_float",

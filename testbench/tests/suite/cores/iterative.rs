@@ -1,30 +1,34 @@
-//! Runs of the cores that take one operation at a time: divider and CORDIC.
+//! Runs of the cores that take one operation at a time: ratio and CORDIC.
 
-use hdl_gen::cores::{cordic, divider};
+use hdl_gen::cores::cordic;
+use hdl_gen::cores::ratio::{divide, latency};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::bench::Run;
 
 /// Plays operations one after the other, with starts and other operands in between that must not matter.
-struct Player<R> {
+struct Player<R, const N: usize> {
     run: Run,
     rng: ChaCha8Rng,
     latency: u32,
     /// Whether the result stays at the port while the next operation is under way.
     keeps_result: bool,
-    junk: fn(&mut ChaCha8Rng) -> [u64; 2],
+    junk: fn(&mut ChaCha8Rng) -> [u64; N],
+    /// Whether a start while one is under way begins the next, as opposed to being ignored.
+    takes_any_start: bool,
     outputs: fn(Option<R>, Option<u64>) -> Vec<Option<u64>>,
     held: Option<R>,
     done: bool,
 }
 
-impl<R: Copy> Player<R> {
-    fn cycle(&mut self, reset: bool, start: bool, operands: [u64; 2]) {
+impl<R: Copy, const N: usize> Player<R, N> {
+    fn cycle(&mut self, reset: bool, start: bool, operands: [u64; N]) {
         // Before the first edge in reset nothing is promised.
         let done = (!self.run.cycles.is_empty()).then_some(u64::from(self.done));
         let expected = (self.outputs)(self.held, done);
-        self.run.push(&[u64::from(reset), u64::from(start), operands[0], operands[1]], &expected);
+        let controls = [u64::from(reset), u64::from(start)];
+        self.run.push(&[&controls[..], &operands[..]].concat(), &expected);
         self.done = false;
     }
 
@@ -35,16 +39,16 @@ impl<R: Copy> Player<R> {
         }
     }
 
-    /// Cycles with an operation under way, in which starts are ignored.
+    /// Cycles with an operation under way, with starts where they are ignored.
     fn busy(&mut self, cycles: u32) {
         for _ in 0..cycles {
             let operands = (self.junk)(&mut self.rng);
-            let start = self.rng.random_ratio(1, 10);
+            let start = !self.takes_any_start && self.rng.random_ratio(1, 10);
             self.cycle(false, start, operands);
         }
     }
 
-    fn operation(&mut self, operands: [u64; 2], result: R) {
+    fn operation(&mut self, operands: [u64; N], result: R) {
         let gap = [0, 0, 1, 5][self.rng.random_range(0..4)];
         self.idle(gap, false);
         if self.rng.random_ratio(1, 100) {
@@ -70,41 +74,52 @@ fn wide(rng: &mut ChaCha8Rng) -> u64 {
     rng.random::<u64>() >> width
 }
 
-pub fn divider() -> Run {
+pub fn ratio() -> Run {
+    const WIDTH: u32 = 40;
+    const INTEGER_BITS: u32 = 6;
+    const BITS: u32 = 22;
     let mut player = Player {
         run: Run::new(
-            "sptfra_divider",
-            &[("reset", 1), ("start", 1), ("numerator", 64), ("denominator", 48)],
-            &[("quotient", 64), ("done", 1)],
+            "sptfra_ratio",
+            &[("reset", 1), ("start", 1), ("numerator_x", WIDTH), ("numerator_y", WIDTH), ("denominator", WIDTH)],
+            &[("quotient_x", BITS), ("quotient_y", BITS), ("done", 1)],
         ),
         rng: ChaCha8Rng::seed_from_u64(4),
-        latency: divider::LATENCY,
+        latency: latency(BITS) as u32,
         keeps_result: false,
-        junk: |rng| [rng.random(), rng.random()],
-        outputs: |quotient, done| vec![quotient, done],
+        takes_any_start: true,
+        junk: |rng| std::array::from_fn(|_| rng.random::<u64>() >> (64 - WIDTH)),
+        outputs: |result: Option<[u64; 2]>, done| {
+            let of = |axis: usize| result.map(|quotients| quotients[axis] & ((1 << BITS) - 1));
+            vec![of(0), of(1), done]
+        },
         held: None,
         done: false,
     };
     player.idle(3, true);
-    let largest = (1 << 48) - 1;
-    let corners =
-        [0, 1, 2, 3, largest / 2, largest - 1, largest, largest + 1, u64::MAX / 2 + 1, u64::MAX - 1, u64::MAX];
-    for numerator in corners {
-        for denominator in corners.into_iter().filter(|&value| value <= largest) {
-            player.operation([numerator, denominator], divider::divide(numerator, denominator));
+    let quotients =
+        |[x, y, denominator]: [u64; 3]| [x, y].map(|value| divide(value << (BITS - INTEGER_BITS), denominator));
+    let largest = (1 << WIDTH) - 1;
+    let corners = [0, 1, 2, 3, largest / 2, largest / 2 + 1, largest - 1, largest];
+    let fits = |numerator: u64, denominator: u64| denominator == 0 || numerator >> INTEGER_BITS < denominator;
+    for denominator in corners {
+        for x in corners.into_iter().filter(|&value| fits(value, denominator)) {
+            for y in corners.into_iter().filter(|&value| fits(value, denominator)) {
+                player.operation([x, y, denominator], quotients([x, y, denominator]));
+            }
         }
     }
     for _ in 0..10_000 {
-        let denominator = wide(&mut player.rng) & largest;
-        let near = player.rng.random_bool(0.2);
-        let numerator = if near {
-            // Next to a multiple of the denominator, where one unit decides the last digit.
-            let factor = player.rng.random::<u16>();
-            denominator.wrapping_mul(u64::from(factor)).wrapping_sub(player.rng.random_range(0..2))
-        } else {
-            wide(&mut player.rng)
+        let denominator = wide(&mut player.rng) >> (64 - WIDTH);
+        let mut numerator = || {
+            // Next to a multiple of the denominator one unit decides the last digit.
+            let near = (denominator * player.rng.random_range(0..64)).saturating_sub(player.rng.random_range(0..2));
+            let any = wide(&mut player.rng) >> (64 - WIDTH);
+            let value = if player.rng.random_bool(0.2) { near } else { any };
+            value.min(largest).min((denominator << INTEGER_BITS).saturating_sub(1))
         };
-        player.operation([numerator, denominator], divider::divide(numerator, denominator));
+        let operands = [numerator(), numerator(), denominator];
+        player.operation(operands, quotients(operands));
     }
     player.idle(4, false);
     player.run
@@ -120,6 +135,7 @@ pub fn cordic() -> Run {
         rng: ChaCha8Rng::seed_from_u64(5),
         latency: cordic::LATENCY,
         keeps_result: true,
+        takes_any_start: false,
         junk: |rng| [rng.random(), rng.random()],
         outputs: |result: Option<cordic::Vector>, done| {
             vec![result.map(|vector| vector.magnitude), result.map(|vector| vector.angle as u64), done]

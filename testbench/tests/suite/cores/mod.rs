@@ -26,7 +26,7 @@ fn played(module: &str) -> &'static Played {
             streaming::multiply_wide("sptfra_multiply_wide"),
             streaming::axis_skid(),
             streaming::row_sequencer(),
-            iterative::divider(),
+            iterative::ratio(),
             iterative::cordic(),
             converters::float_to_fixed(),
             converters::fixed_to_float(),
@@ -78,8 +78,8 @@ fn row_sequencer_marks_the_products_of_the_reference() {
 }
 
 #[test]
-fn divider_divides_as_its_reference() {
-    played("sptfra_divider").check(10_000);
+fn ratio_divides_as_its_reference() {
+    played("sptfra_ratio").check(10_000);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use golden::parity::COMPONENTS;
 
 use super::super::super::Inputs;
 use super::super::{CENTRE_HALF, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS};
-use crate::cores::{SHORT_BITS, divider};
+use crate::cores::{SHORT_BITS, ratio};
 use crate::format::{FRICTION_FRACTION, SUM_BITS, largest, round_shift};
 
 /// Fraction bits of the contact's centre.
@@ -43,7 +43,7 @@ pub fn take(network: &NetworkPlan, inputs: &Inputs, mu: [i64; 2]) -> Features {
     // Without compression any place does: there is nothing to see.
     let centroid = [along_x, along_y].map(|moment| match sum {
         0 => 0,
-        _ => divider::divide((moment as u64) << CENTRE_FRACTION, sum as u64) as i64,
+        _ => ratio::divide((moment as u64) << CENTRE_FRACTION, sum as u64) as i64,
     });
     let centre = centroid.map(|at| (at + CENTRE_HALF) >> CENTRE_FRACTION);
     let at = |[x, y]: [i64; 2]| {
@@ -76,6 +76,6 @@ pub fn take(network: &NetworkPlan, inputs: &Inputs, mu: [i64; 2]) -> Features {
 /// `1 / sum` as a factor of `2^-(RECIPROCAL_BITS + sum_bits)`; it has 17 significant bits.
 fn reciprocal(sum: i64, sum_bits: u32) -> i64 {
     let normalised = (sum as u64) << (SUM_BITS - sum_bits);
-    let quotient = divider::divide(1 << (SUM_BITS + RECIPROCAL_BITS), normalised);
+    let quotient = ratio::divide(1 << (SUM_BITS + RECIPROCAL_BITS), normalised);
     quotient.min(largest(SHORT_BITS) as u64) as i64
 }

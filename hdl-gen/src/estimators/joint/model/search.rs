@@ -3,7 +3,7 @@
 use super::super::super::Inputs;
 use super::super::SearchPlan;
 use super::super::search::{GRID, Values, WEIGHT_DROP};
-use crate::cores::divider;
+use crate::cores::ratio;
 use crate::format::FRICTION_FRACTION;
 
 /// The level set's centroid.
@@ -40,7 +40,7 @@ pub fn search(plan: &SearchPlan, inputs: &Inputs) -> Centroid {
     let [sum, ref moments @ ..] = sums;
     let quotient = |moment: i64| {
         let numerator = moment.unsigned_abs() << (FRICTION_FRACTION - GRID.shift);
-        let magnitude = divider::divide(numerator, sum as u64) as i64;
+        let magnitude = ratio::divide(numerator, sum as u64) as i64;
         if moment < 0 { -magnitude } else { magnitude }
     };
     Centroid { mu: moments.map(quotient), unknown: corners == 4, on_border: on_border < inside, saturated: clipped }

@@ -70,7 +70,7 @@ async def receive(dut):
                 return packet
 
 
-@cocotb.test(timeout_time=334.64, timeout_unit="us")
+@cocotb.test(timeout_time=322.32, timeout_unit="us")
 async def every_word_is_the_models(dut):
     random.seed(1)
     cocotb.start_soon(Clock(dut.aclk, 10, unit="ns").start())

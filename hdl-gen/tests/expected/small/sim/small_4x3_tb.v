@@ -27,7 +27,7 @@ module small_4x3_tb #(
     // Cycles in reset, cycles to wait for a word too many, and cycles after which the core is stuck
     localparam RESET = 8;
     localparam QUIET = 64;
-    localparam TIMEOUT = 33464;
+    localparam TIMEOUT = 32232;
     // Words that are shown when they are wrong
     localparam SHOWN = 10;
 

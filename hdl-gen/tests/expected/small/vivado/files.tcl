@@ -24,7 +24,6 @@ foreach file {
     sptfra_context_field.v
     sptfra_cordic.v
     sptfra_direction.v
-    sptfra_divider.v
     sptfra_estimator_line.v
     sptfra_field.v
     sptfra_fixed_to_float.v

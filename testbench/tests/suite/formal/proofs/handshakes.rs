@@ -8,7 +8,6 @@ const FREE: &[&str] = &[
     "*sptfra_axis_skid*",
     "*sptfra_frame_context*",
     "*sptfra_fixed_to_float*",
-    "*sptfra_divider*",
     "*sptfra_ratio*",
     "*sptfra_mac*",
     "*sptfra_leading_bit*",
