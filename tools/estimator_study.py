@@ -383,10 +383,10 @@ def errors(found, truth):
     return 100 * np.hypot(*(found - truth[:, :2]).T) / np.abs(truth[:, 2])
 
 
-def scene(sptfra, design, kind, folder):
+def scene(sptfra, design, kind, folder, count=CONTACTS, seed=SEED):
     """Frames and true forces of contacts of a kind."""
     frames = folder / f"{kind}.csv"
-    options = ["--kind", kind, "--count", str(CONTACTS), "--seed", str(SEED), "--out", str(frames)]
+    options = ["--kind", kind, "--count", str(count), "--seed", str(seed), "--out", str(frames)]
     subprocess.run([sptfra, "scene", "--design", str(design), *options], check=True, capture_output=True)
     truth = np.genfromtxt(frames.with_suffix(".forces.csv"), delimiter=",", skip_header=1)[:, 1:4]
     return np.loadtxt(frames, delimiter=","), truth
@@ -418,14 +418,20 @@ sensor,kind,estimator,noise,median,p95
 """
 
 
-def head():
-    """What the table is, with the designs' sums."""
+def designs_sums(names):
+    """Designs with the sums of their files and weights, for the head of a table."""
     sums = []
-    for name in (f"sensor{sensor}-{name}" for sensor in PITCHES_MM for name in ("fast", "wide")):
+    for name in names:
         files = [ROOT / "designs" / (name + ending) for ending in (".toml", ".weights.csv")]
         sums.append(f"{name} {hashlib.sha256(b''.join(file.read_bytes() for file in files)).hexdigest()[:16]}")
+    return ", ".join(sums)
+
+
+def head():
+    """What the table is, with the designs' sums."""
+    designs = designs_sums(f"sensor{sensor}-{name}" for sensor in PITCHES_MM for name in ("fast", "wide"))
     sizes = {"contacts": CONTACTS, "draws": DRAWS, "units": UNITS, "many": MANY_UNITS}
-    return HEAD.format(**sizes, noise=NOISE, half=NOISE / 2, designs=", ".join(sums))
+    return HEAD.format(**sizes, noise=NOISE, half=NOISE / 2, designs=designs)
 
 
 def main() -> None:
