@@ -6,26 +6,20 @@ use crate::dead_taxels::DeadTaxels;
 use crate::design::{CalibrationIn, Design};
 use crate::frames::push_row;
 
-/// Why a design has no bank.
-#[derive(Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "{design}: the design's calibration is in ROM, and no board can load another one; add [hardware] calibration = \"ram\" \
-     and control = true, and synthesize it once"
-)]
-pub struct NoBank {
-    design: String,
-}
-
 /// The file that the drivers load, for a design whose calibration is in RAM. A header line `gain,offset,taxel 37,…` names
 /// the dead taxels, ascending; then follows a line for each taxel: its gain, 0 of a dead one, its offset in counts, and its
 /// weight in the stress of each dead taxel. Where banks have no room for dead taxels, gain and offset alone. Of a design
 /// with a curve, whose offsets are in pascals, a header `count,pascals` follows, and a line for each of its points.
 ///
 /// # Errors
-/// [`NoBank`] for a calibration in ROM.
-pub fn to_csv(design: &Design) -> Result<String, NoBank> {
+/// A calibration in ROM, in words.
+pub fn to_csv(design: &Design) -> Result<String, String> {
     if design.hardware.calibration == CalibrationIn::Rom {
-        return Err(NoBank { design: design.name.clone() });
+        return Err(format!(
+            "{}: the design's calibration is in ROM, and no board can load another one; add [hardware] calibration = \"ram\" \
+             and control = true, and synthesize it once",
+            design.name
+        ));
     }
     let (input, taxels) = (&design.input, design.sensor.taxels());
     let replaced = if design.input.room == 0 { &[][..] } else { &input.dead };

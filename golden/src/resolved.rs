@@ -13,31 +13,27 @@ pub enum ResolvedError {
     /// The design that it was made from.
     #[error(transparent)]
     Design(#[from] DesignError),
-    /// An output is an input.
-    #[error("{}: the output would overwrite the input {}; choose another name", out.display(), input.display())]
-    Overwrites {
-        /// The output.
-        out: PathBuf,
-        /// The input.
-        input: PathBuf,
-    },
-    /// Another design's calibration is where this one's would be.
-    #[error("{}: is another calibration than that of the design; write --out to another folder", .0.display())]
-    Calibration(PathBuf),
+    /// An output is an input, or another design's calibration is where this one's would be, in words.
+    #[error("{0}")]
+    Taken(String),
 }
 
 /// Refuses an output that is one of the inputs.
 ///
 /// # Errors
 ///
-/// [`ResolvedError::Overwrites`].
+/// [`ResolvedError::Taken`].
 pub fn keep_apart(out: &Path, inputs: &[impl AsRef<Path>]) -> Result<(), ResolvedError> {
     let same = |input: &&Path| match (out.canonicalize(), input.canonicalize()) {
         (Ok(out), Ok(input)) => out == input,
         _ => false,
     };
     match inputs.iter().map(AsRef::as_ref).find(same) {
-        Some(input) => Err(ResolvedError::Overwrites { out: out.to_path_buf(), input: input.to_path_buf() }),
+        Some(input) => Err(ResolvedError::Taken(format!(
+            "{}: the output would overwrite the input {}; choose another name",
+            out.display(),
+            input.display()
+        ))),
         None => Ok(()),
     }
 }
@@ -129,7 +125,10 @@ impl<'a> Resolved<'a> {
         *plain.algorithm.joint = JointConstants::default();
         match Design::from_toml(&plain.to_toml(), &self.design.display().to_string()) {
             Ok(again) if again.input.calibration == design.input.calibration => Ok(()),
-            _ => Err(ResolvedError::Calibration(self.path(CALIBRATION_FILE))),
+            _ => Err(ResolvedError::Taken(format!(
+                "{}: is another calibration than that of the design; write --out to another folder",
+                self.path(CALIBRATION_FILE).display()
+            ))),
         }
     }
 }

@@ -34,34 +34,6 @@ const TOGETHER: f64 = 0.5;
 /// Frames whose largest reading is this share of the largest of all have load.
 const LOADED: f64 = 0.1;
 
-/// Why frames do not measure an unloaded sensor.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum RestError {
-    /// Too few frames.
-    #[error("{} without load: too few to measure noise: record {FRAMES} at least, better 200", counted(*.0, "frame"))]
-    Few(usize),
-    /// Offsets of readings in pascals.
-    #[error(
-        "sensor.calibration is for counts, and this design's frames are in pascals: write sensor.pa_per_count, what a count \
-         is worth, or 1.0 to have offsets in pascals taken off"
-    )]
-    Pascals,
-    /// More dead taxels than can be replaced.
-    #[error(
-        "{0} taxels are dead or stuck, and {1} of this sensor's can be replaced: mend the sensor, or leave out the part of it"
-    )]
-    Dead(usize, usize),
-    /// No frame of contacts has load.
-    #[error("no frame has load above the noise; record contacts")]
-    NoLoad,
-    /// Frames of contacts with less load than those without.
-    #[error(
-        "{0} of {1} frames read less load than the unloaded ones: did something press while those were recorded? Record them \
-         anew; if nothing did, the sign is wrong: compression must be negative"
-    )]
-    LessLoad(usize, usize),
-}
-
 /// What one taxel reads unloaded, in the units of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TaxelAtRest {
@@ -112,10 +84,13 @@ impl AtRest {
     ///
     /// # Errors
     ///
-    /// [`RestError::Few`].
-    pub fn of(design: &Design, frames: &[Vec<f64>]) -> Result<Self, RestError> {
+    /// Too few frames, in words.
+    pub fn of(design: &Design, frames: &[Vec<f64>]) -> Result<Self, String> {
         if frames.len() < FRAMES {
-            return Err(RestError::Few(frames.len()));
+            let found = counted(frames.len(), "frame");
+            return Err(format!(
+                "{found} without load: too few to measure noise: record {FRAMES} at least, better 200"
+            ));
         }
         let all: Vec<TaxelAtRest> = (0..design.sensor.taxels()).map(|taxel| taxel_at_rest(frames, taxel)).collect();
         let known = |taxel: usize| design.input.dead.contains(&taxel);
@@ -274,8 +249,8 @@ impl AtRest {
     ///
     /// # Errors
     ///
-    /// [`RestError::NoLoad`], and [`RestError::LessLoad`] where nearly all frames with load pull.
-    pub fn noise_of(&self, design: &Design, loaded: &[Vec<f64>]) -> Result<MeasuredNoise, RestError> {
+    /// No frame has load, or nearly all frames with load pull, in words.
+    pub fn noise_of(&self, design: &Design, loaded: &[Vec<f64>]) -> Result<MeasuredNoise, String> {
         let above = |frame: &Vec<f64>| -> Vec<f64> {
             let live = self.taxels.iter().filter(|each| self.works(each.taxel));
             let of = |taxel: usize, value: f64| design.input.to_pa(taxel, value);
@@ -286,12 +261,15 @@ impl AtRest {
         let of_contacts = || above.iter().filter(|frame| magnitude(*frame) >= LOADED * largest);
         let typical = median(of_contacts().map(magnitude));
         if typical <= QUIET * self.noise_pa {
-            return Err(RestError::NoLoad);
+            return Err("no frame has load above the noise; record contacts".to_owned());
         }
         let [pull, all] =
             [of_contacts().filter(|frame| frame.iter().sum::<f64>() > 0.0).count(), of_contacts().count()];
         if holds(pull, all) {
-            return Err(RestError::LessLoad(pull, all));
+            return Err(format!(
+                "{pull} of {all} frames read less load than the unloaded ones: did something press while those were recorded? \
+                 Record them anew; if nothing did, the sign is wrong: compression must be negative"
+            ));
         }
         Ok(MeasuredNoise { deviation: self.noise_pa, largest: typical })
     }
@@ -300,14 +278,21 @@ impl AtRest {
     ///
     /// # Errors
     ///
-    /// [`RestError::Pascals`] for a design without counts, [`RestError::Dead`] with more dead taxels than it may have.
-    pub fn calibration(&self, design: &Design, frames: &[Vec<f64>]) -> Result<Calibration, RestError> {
+    /// A design without counts, or more dead taxels than it may have, in words.
+    pub fn calibration(&self, design: &Design, frames: &[Vec<f64>]) -> Result<Calibration, String> {
         if !design.input.counts() {
-            return Err(RestError::Pascals);
+            return Err(
+                "sensor.calibration is for counts, and this design's frames are in pascals: write sensor.pa_per_count, what a \
+                 count is worth, or 1.0 to have offsets in pascals taken off"
+                    .to_owned(),
+            );
         }
         let (dead, most) = (self.dead.len() + self.stuck.len(), MOST_DEAD.min(self.taxels.len() / 2));
         if dead > most {
-            return Err(RestError::Dead(dead, most));
+            return Err(format!(
+                "{dead} taxels are dead or stuck, and {most} of this sensor's can be replaced: mend the sensor, or leave out \
+                 the part of it"
+            ));
         }
         let (gain, offset) = self
             .taxels

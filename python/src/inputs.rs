@@ -8,7 +8,7 @@ use golden::frames::{Layout, read_recording};
 use golden::geometry;
 use golden::matrices::Matrices;
 use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
-use golden::rest::{AtRest, RestError, TaxelAtRest};
+use golden::rest::{AtRest, TaxelAtRest};
 use golden::scene::{ChoiceError, Kind, Scene, SceneFrame};
 use golden::solver::{Solution, Status};
 use golden::words;
@@ -116,7 +116,7 @@ pub fn rest<'py>(py: Python<'py>, design: &Design, frames: &Bound<'py, PyAny>) -
     let frames = Frames::of(design, frames)?;
     frames.finite()?;
     let frames = frames.rows();
-    let named = |error: RestError| format!("{}: {error}", design.name);
+    let named = |error: String| format!("{}: {error}", design.name);
     let found = AtRest::of(design, &frames).map_err(|error| raised(named(error)))?;
     let (calibration, tared, refused) = match found.calibration(design, &frames) {
         Ok(calibration) => (calibration.to_csv(), Some(tared(design, calibration, &found)?), String::new()),

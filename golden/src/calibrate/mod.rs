@@ -18,7 +18,7 @@ pub use contacts::random_contacts;
 pub use standard_error::{ERROR_FRAMES, state_errors};
 
 use crate::design::{Design, Estimator, Input, JointConstants, Reads, conditions};
-use crate::estimators::joint::{CUBIC_LIMIT, MAX_HIDDEN};
+use crate::estimators::joint::CUBIC_LIMIT;
 use crate::scene::SceneError;
 use crate::solver::SolverError;
 use observer::{Observer, Sample};
@@ -80,50 +80,24 @@ impl Default for Settings {
 /// Why a design cannot be calibrated.
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrateError {
-    /// The estimator has no constants.
-    #[error("{name}: the estimator is \"line\", which has no constants; write estimator = \"joint\" under [algorithm]")]
-    OtherEstimator {
-        /// Name of the design.
-        name: String,
-    },
     /// The sensor's matrices or the filter.
     #[error(transparent)]
     Solver(#[from] SolverError),
     /// The sensor is too deep or too shallow for scenes.
     #[error("contacts for the calibration: {0}")]
     Scene(#[from] SceneError),
-    /// More hidden units than there is room for.
-    #[error("--hidden {hidden}: the hardware has room for {MAX_HIDDEN}; use at most {MAX_HIDDEN}")]
-    Hidden {
-        /// Units asked for.
-        hidden: usize,
-    },
-    /// No frame had an answer.
-    #[error(
-        "{name}: none of the {samples} frames made for the calibration has an answer; lower algorithm.noise_floor_pa \
-         or check the filter"
-    )]
-    NoAnswer {
-        /// Name of the design.
-        name: String,
-        /// Frames made.
-        samples: usize,
-    },
-    /// The fitted constants are outside what a design file may hold.
-    #[error(
-        "{name}: the calibration finds gain {gain:.3} and friction_correction = [{c1:.3}, {c3:.3}], which is out of range: this \
-         sensor cannot be calibrated; check its pitch and depth"
-    )]
-    OutOfRange {
-        /// Name of the design.
-        name: String,
-        /// Factor on the forces.
-        gain: f64,
-        /// Linear friction constant.
-        c1: f64,
-        /// Cubic friction constant.
-        c3: f64,
-    },
+    /// What else is wrong and what to do, in words.
+    #[error("{0}")]
+    Wrong(String),
+}
+
+impl CalibrateError {
+    fn no_answer(name: &str, samples: usize) -> Self {
+        Self::Wrong(format!(
+            "{name}: none of the {samples} frames made for the calibration has an answer; lower algorithm.noise_floor_pa or \
+             check the filter"
+        ))
+    }
 }
 
 /// Fits the constants of the grid search to a design; `tick` is called after each piece of work: a contact's stress, a
@@ -140,9 +114,11 @@ pub fn calibrate(
     settings: &Settings,
     tick: &mut dyn FnMut(),
 ) -> Result<JointConstants, CalibrateError> {
-    let name = || design.name.clone();
+    let name = &design.name;
     if design.algorithm.estimator != Estimator::Joint {
-        return Err(CalibrateError::OtherEstimator { name: name() });
+        return Err(CalibrateError::Wrong(format!(
+            "{name}: the estimator is \"line\", which has no constants; write estimator = \"joint\" under [algorithm]"
+        )));
     }
     // The contacts are in pascals, whatever the sensor counts, and frames do not follow each other.
     let Input { tension, noise, smoothing, .. } = design.input;
@@ -151,14 +127,17 @@ pub fn calibrate(
     let mut observer = Observer::new(design, smoothing, half_window)?;
     let samples = samples::make(&mut observer, settings, tick)?;
     if samples.is_empty() {
-        return Err(CalibrateError::NoAnswer { name: name(), samples: settings.samples });
+        return Err(CalibrateError::no_answer(name, settings.samples));
     }
     let (gain, targets) = samples::gain_and_targets(&samples);
     let friction_correction = fit_friction_correction(&samples, &targets);
     let [c1, c3] = friction_correction;
     let legal = (0.1..=10.0).contains(&gain) && (0.1..=10.0).contains(&c1) && c3.abs() <= CUBIC_LIMIT;
     if !legal {
-        return Err(CalibrateError::OutOfRange { name: name(), gain, c1, c3 });
+        return Err(CalibrateError::Wrong(format!(
+            "{name}: the calibration finds gain {gain:.3} and friction_correction = [{c1:.3}, {c3:.3}], which is out of range: \
+             this sensor cannot be calibrated; check its pitch and depth"
+        )));
     }
     let (sensor, training_set) = (&design.sensor, design.algorithm.joint.training_set);
     let correction = (settings.hidden > 0).then(|| {

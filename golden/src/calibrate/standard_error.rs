@@ -69,7 +69,7 @@ pub fn state_errors(design: &mut Design, seed: u64, tick: &mut dyn FnMut()) -> R
     let by_noise: Vec<Quantiles> = (0..EXPECTED_NOISES.len()).map(|at| Quantiles::of(of_noise(at))).collect();
     let frames: Vec<Frame> = contacts.into_iter().filter_map(|contact| contact.frame).collect();
     if frames.is_empty() || by_noise.iter().any(|errors| errors.median.is_nan()) {
-        return Err(CalibrateError::NoAnswer { name: design.name.clone(), samples: ERROR_FRAMES });
+        return Err(CalibrateError::no_answer(&design.name, ERROR_FRAMES));
     }
     design.algorithm.standard_error = Some(fit(&frames));
     let row = |of: fn(&Quantiles) -> f64| by_noise.iter().map(|errors| rounded(of(errors), EXPECTED_DIGITS)).collect();

@@ -12,7 +12,7 @@ impl Settings {
     ///
     /// # Errors
     ///
-    /// [`CalibrateError::Hidden`] for more units than the hardware has room for.
+    /// [`CalibrateError::Wrong`] for more units than the hardware has room for.
     pub fn of(
         training_set: TrainingSet,
         seed: u64,
@@ -21,7 +21,9 @@ impl Settings {
         thorough: bool,
     ) -> Result<Self, CalibrateError> {
         if let Some(hidden) = hidden.filter(|&hidden| hidden > MAX_HIDDEN) {
-            return Err(CalibrateError::Hidden { hidden });
+            return Err(CalibrateError::Wrong(format!(
+                "--hidden {hidden}: the hardware has room for {MAX_HIDDEN}; use at most {MAX_HIDDEN}"
+            )));
         }
         let usual = if quick { Self::quick() } else { Self::default() };
         let usual = match training_set {

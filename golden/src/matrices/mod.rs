@@ -13,42 +13,10 @@ use crate::parity::{FoldedMatrix, Orbits};
 use crate::sensor::Sensor;
 use factor::{Factors, Spectrum};
 
-/// Why the matrices of a sensor cannot be computed.
+/// Why the matrices of a sensor cannot be computed, in words.
 #[derive(Debug, thiserror::Error)]
-pub enum MatrixError {
-    /// A matrix to be inverted is singular to working precision.
-    #[error(
-        "{matrix} is singular to working precision (condition number {condition:.1e}): a depth of {depth_mm} mm \
-         blurs a pitch of {} x {} mm beyond recovery; use a smaller depth or a larger pitch, depth/pitch below about \
-         3, or write regularisation = 0.01 under [algorithm]",
-        pitch_mm[0], pitch_mm[1]
-    )]
-    Singular {
-        /// Name of the matrix.
-        matrix: &'static str,
-        /// Its condition number in the 2-norm, as far as it can be told in `f64`.
-        condition: f64,
-        /// Depth of the sensor.
-        depth_mm: f64,
-        /// Pitch of the sensor.
-        pitch_mm: [f64; 2],
-    },
-    /// The inverses exist, and multiply the faintest noise beyond reason.
-    #[error(
-        "A A^T has the condition number {condition:.1e}: at a depth of {depth_mm} mm and a pitch of {} x {} mm the \
-         noise of any sensor becomes a wild force; write regularisation = {{ noise = 0.002 }} under [algorithm], with the noise \
-         of the sensor, or use a smaller depth or a larger pitch",
-        pitch_mm[0], pitch_mm[1]
-    )]
-    IllConditioned {
-        /// Condition number of `A A^T` in the 2-norm.
-        condition: f64,
-        /// Depth of the sensor.
-        depth_mm: f64,
-        /// Pitch of the sensor.
-        pitch_mm: [f64; 2],
-    },
-}
+#[error("{0}")]
+pub struct MatrixError(String);
 
 /// C31, C32, C33 and the 13 matrices of a sensor, each `m` by `m`.
 ///
@@ -82,7 +50,7 @@ impl Matrices {
     ///
     /// # Errors
     ///
-    /// [`MatrixError::Singular`] when C33 or `A A^T` is singular to working precision.
+    /// [`MatrixError`] when C33 or `A A^T` is singular to working precision.
     pub fn new(sensor: &Sensor, kernel: Kernel) -> Result<Self, MatrixError> {
         Self::regularised(sensor, kernel, 0.0)
     }
@@ -91,14 +59,18 @@ impl Matrices {
     ///
     /// # Errors
     ///
-    /// As [`Matrices::new`], and [`MatrixError::IllConditioned`].
+    /// As [`Matrices::new`], and [`MatrixError`] where the inverses multiply the faintest noise beyond reason.
     pub fn of(design: &Design) -> Result<Self, MatrixError> {
         let sensor = &design.sensor;
         let matrices = Self::regularised(sensor, design.algorithm.kernel, design.algorithm.regularisation.factor())?;
         let condition = matrices.condition_aat;
         if condition > ILL_CONDITIONED {
-            let Sensor { depth_mm, pitch_mm, .. } = *sensor;
-            return Err(MatrixError::IllConditioned { condition, depth_mm, pitch_mm });
+            let Sensor { depth_mm, pitch_mm: [x, y], .. } = sensor;
+            return Err(MatrixError(format!(
+                "A A^T has the condition number {condition:.1e}: at a depth of {depth_mm} mm and a pitch of {x} x {y} mm the \
+                 noise of any sensor becomes a wild force; write regularisation = {{ noise = 0.002 }} under [algorithm], with \
+                 the noise of the sensor, or use a smaller depth or a larger pitch"
+            )));
         }
         Ok(matrices)
     }
@@ -110,11 +82,13 @@ impl Matrices {
     ///
     /// As [`Matrices::new`].
     pub fn regularised(sensor: &Sensor, kernel: Kernel, factor: f64) -> Result<Self, MatrixError> {
-        let singular = |matrix, condition| MatrixError::Singular {
-            matrix,
-            condition,
-            depth_mm: sensor.depth_mm,
-            pitch_mm: sensor.pitch_mm,
+        let singular = |matrix: &str, condition: f64| {
+            let Sensor { depth_mm, pitch_mm: [x, y], .. } = sensor;
+            MatrixError(format!(
+                "{matrix} is singular to working precision (condition number {condition:.1e}): a depth of {depth_mm} mm blurs \
+                 a pitch of {x} x {y} mm beyond recovery; use a smaller depth or a larger pitch, depth/pitch below about 3, or \
+                 write regularisation = 0.01 under [algorithm]"
+            ))
         };
         let orbits = Orbits::new(sensor.columns, sensor.rows);
         let mut c = kernel::folded(sensor, kernel);

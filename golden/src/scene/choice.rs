@@ -1,9 +1,9 @@
 //! Which scene frames are made of: one of a file, or the standing one of a design's sensor.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::{Scene, SceneError};
-use crate::design::{Design, Sensor};
+use crate::design::Design;
 
 /// Why there is no scene to make frames of.
 #[derive(Debug, thiserror::Error)]
@@ -11,22 +11,9 @@ pub enum ChoiceError {
     /// The scene of the file.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// A scene of another sensor than the design's.
-    #[error(
-        "{}: the scene has {}, the design {design} has {}; write the design's values under [sensor] in the scene, or \
-         leave the scene out for a contact that suits the design", file.display(), sensors[0], sensors[1]
-    )]
-    OtherSensor {
-        /// The scene.
-        file: PathBuf,
-        /// The scene's and the design's.
-        sensors: Box<[Sensor; 2]>,
-        /// Name of the design.
-        design: String,
-    },
-    /// Neither a scene nor a design.
-    #[error("nothing to make frames of; name a scene file, or a design with --design")]
-    Nothing,
+    /// A scene of another sensor than the design's, or neither a scene nor a design, in words.
+    #[error("{0}")]
+    Wrong(String),
 }
 
 impl Scene {
@@ -44,14 +31,19 @@ impl Scene {
                 if scene.sensor == design.sensor {
                     return Ok(scene);
                 }
-                Err(ChoiceError::OtherSensor {
-                    file: file.to_path_buf(),
-                    sensors: Box::new([scene.sensor, design.sensor.clone()]),
-                    design: design.name.clone(),
-                })
+                Err(ChoiceError::Wrong(format!(
+                    "{}: the scene has {}, the design {} has {}; write the design's values under [sensor] in the scene, or \
+                     leave the scene out for a contact that suits the design",
+                    file.display(),
+                    scene.sensor,
+                    design.name,
+                    design.sensor
+                )))
             }
             (None, Some(design)) => Ok(Self::standing(&design.sensor)),
-            (None, None) => Err(ChoiceError::Nothing),
+            (None, None) => Err(ChoiceError::Wrong(
+                "nothing to make frames of; name a scene file, or a design with --design".to_owned(),
+            )),
         }
     }
 }

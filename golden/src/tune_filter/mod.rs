@@ -8,58 +8,18 @@ mod scenes;
 
 pub use scenes::{rebase_scenes, reference_frames};
 
-use std::path::{Path, PathBuf};
-
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
 use crate::design::{Choices, Design, Filter, Input, MatrixFilter};
 use crate::filter::{FilterError, FilteredMatrices};
 use crate::matrices::{Matrices, MatrixError, MatrixName};
-use crate::scene::{SceneError, SceneFrame};
+use crate::scene::SceneFrame;
 use crate::solver::{Solver, SolverError};
 
 /// Why no choice can be made.
 #[derive(Debug, thiserror::Error)]
 pub enum TuneFilterError {
-    /// The design has another filter.
-    #[error(
-        "{name}: the filter is not f3, so there is nothing to choose; write \
-         filter = {{ kind = \"f3\", scenes = [\"SCENE.toml\"] }} under [algorithm]"
-    )]
-    OtherFilter {
-        /// Name of the design.
-        name: String,
-    },
-    /// Choices were given by hand.
-    #[error(
-        "{name}: the filter f3 names no scenes to choose by; write scenes = [\"SCENE.toml\"] beside its kind, \
-         relative to the design file"
-    )]
-    NoScenes {
-        /// Name of the design.
-        name: String,
-    },
-    /// A reference scene is wrong.
-    #[error("{}", in_scene(path, source))]
-    Scene {
-        /// The scene file.
-        path: PathBuf,
-        /// Why.
-        source: SceneError,
-    },
-    /// A reference scene is that of another sensor.
-    #[error(
-        "reference scene {}: its [sensor] is not that of the design {name}; give a scene with the same columns, rows, \
-         pitch_mm and depth_mm",
-        path.display()
-    )]
-    OtherSensor {
-        /// The scene file.
-        path: PathBuf,
-        /// Name of the design.
-        name: String,
-    },
     /// The sensor's matrices cannot be computed.
     #[error(transparent)]
     Matrices(#[from] MatrixError),
@@ -69,14 +29,6 @@ pub enum TuneFilterError {
     /// The frames are not those of the sensor.
     #[error(transparent)]
     Frames(#[from] SolverError),
-}
-
-/// What is wrong with a scene, with its file; that is part of some messages already.
-fn in_scene(path: &Path, error: &SceneError) -> String {
-    match error {
-        SceneError::File(error) => format!("reference scene {error}"),
-        SceneError::TooFine { .. } => format!("reference scene {}: {error}", path.display()),
-    }
 }
 
 /// One filter of one matrix, judged.

@@ -2,32 +2,44 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use super::TuneFilterError;
 use crate::design::{Design, Filter};
-use crate::scene::{Scene, SceneFrame};
+use crate::scene::{Scene, SceneError, SceneFrame};
 
 /// Computes the frames of the reference scenes of a design; their paths are relative to `folder`, that of the design
 /// file.
 ///
 /// # Errors
 ///
-/// [`TuneFilterError::OtherFilter`] and [`TuneFilterError::NoScenes`] for a design without any,
-/// [`TuneFilterError::Scene`] and [`TuneFilterError::OtherSensor`] for scenes that are wrong.
-pub fn reference_frames(design: &Design, folder: &Path) -> Result<Vec<SceneFrame>, TuneFilterError> {
-    let name = || design.name.clone();
+/// A design without any, or a scene that is wrong, in words.
+pub fn reference_frames(design: &Design, folder: &Path) -> Result<Vec<SceneFrame>, String> {
+    let name = &design.name;
     let Filter::F3 { scenes, .. } = &design.algorithm.filter else {
-        return Err(TuneFilterError::OtherFilter { name: name() });
+        return Err(format!(
+            "{name}: the filter is not f3, so there is nothing to choose; write \
+             filter = {{ kind = \"f3\", scenes = [\"SCENE.toml\"] }} under [algorithm]"
+        ));
     };
     if scenes.is_empty() {
-        return Err(TuneFilterError::NoScenes { name: name() });
+        return Err(format!(
+            "{name}: the filter f3 names no scenes to choose by; write scenes = [\"SCENE.toml\"] beside its kind, relative to \
+             the design file"
+        ));
     }
     let mut frames = Vec::new();
     for scene in scenes {
         let path = folder.join(scene);
-        let failed = |source| TuneFilterError::Scene { path: path.clone(), source };
+        // The path is part of some messages already.
+        let failed = |error: SceneError| match error {
+            SceneError::File(error) => format!("reference scene {error}"),
+            SceneError::TooFine { .. } => format!("reference scene {}: {error}", path.display()),
+        };
         let scene = Scene::load(&path).map_err(failed)?;
         if scene.sensor != design.sensor {
-            return Err(TuneFilterError::OtherSensor { path, name: name() });
+            return Err(format!(
+                "reference scene {}: its [sensor] is not that of the design {name}; give a scene with the same columns, rows, \
+                 pitch_mm and depth_mm",
+                path.display()
+            ));
         }
         frames.extend(scene.frames().map_err(failed)?);
     }

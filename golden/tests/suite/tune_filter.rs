@@ -124,7 +124,7 @@ fn wrong_scenes_are_refused() {
     let with = |filter| {
         let mut design = design("sensor1-f3");
         design.algorithm.filter = filter;
-        reference_frames(&design, &designs()).unwrap_err().to_string()
+        reference_frames(&design, &designs()).unwrap_err()
     };
     let scenes = |path: &str| Filter::F3 { scenes: vec![path.to_owned()], choices: None };
     for (filter, parts) in [
