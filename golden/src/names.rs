@@ -77,19 +77,12 @@ impl MatrixName {
     }
 }
 
-/// A word that names none of the 13 matrices.
-#[derive(Debug, thiserror::Error)]
-#[error("\"{word}\" is no matrix; the names are {}", names.join(" "))]
-pub struct UnknownMatrix {
-    word: String,
-    names: &'static [&'static str],
-}
-
 impl FromStr for MatrixName {
-    type Err = UnknownMatrix;
+    type Err = String;
 
     fn from_str(word: &str) -> Result<Self, Self::Err> {
-        words::read(word).map_err(|unknown| UnknownMatrix { word: word.to_owned(), names: unknown.allowed })
+        words::read(word)
+            .map_err(|unknown| format!("\"{word}\" is no matrix; the names are {}", unknown.allowed.join(" ")))
     }
 }
 

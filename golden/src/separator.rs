@@ -22,17 +22,8 @@ enum Comma {
 }
 
 impl Comma {
-    /// The commas of a field; nothing if it has none.
-    fn of(field: &[u8]) -> Option<Self> {
-        Self::marks(field, b',')
-    }
-
-    /// The points of a field; nothing if it has none.
-    fn of_points(field: &[u8]) -> Option<Self> {
-        Self::marks(field, b'.')
-    }
-
-    fn marks(field: &[u8], mark: u8) -> Option<Self> {
+    /// The marks of a field, commas or points; nothing if it has none.
+    fn of(field: &[u8], mark: u8) -> Option<Self> {
         let digits = field.strip_prefix(b"-").or(field.strip_prefix(b"+")).unwrap_or(field);
         let mut groups = digits.split(|&byte| byte == mark);
         let first = groups.next()?;
@@ -74,9 +65,10 @@ impl Marks {
     ///
     /// A field that is a number only with separators of thousands.
     pub(crate) fn take(&mut self, field: &[u8], separator: Separator, place: [usize; 2]) -> Result<(), Unclear> {
-        let points =
-            Some(field).filter(|_| matches!(separator, Separator::Byte(b';' | b'\t'))).and_then(Comma::of_points);
-        for (of, (mark, found)) in [("comma", Comma::of(field)), ("point", points)].into_iter().enumerate() {
+        let points = Some(field)
+            .filter(|_| matches!(separator, Separator::Byte(b';' | b'\t')))
+            .and_then(|field| Comma::of(field, b'.'));
+        for (of, (mark, found)) in [("comma", Comma::of(field, b',')), ("point", points)].into_iter().enumerate() {
             let unclear = || Unclear { place, text: String::from_utf8_lossy(field).chars().take(40).collect(), mark };
             match (found, number(field)) {
                 (Some(Comma::Decimal), Some(_)) => self.decimal[of] = true,

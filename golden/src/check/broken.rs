@@ -15,14 +15,9 @@ const HANDED: f64 = 0.3;
 /// More broken taxels than one of so many are another kind of sensor than the design says.
 const ONE_OF: usize = 20;
 
-/// Broken taxels, in ascending order, and the frames with the mean of their neighbours in their places.
-pub(super) struct Broken {
-    pub(super) message: String,
-    pub(super) mended: Vec<Vec<f64>>,
-}
-
-/// Looks for them in frames of values as they are in the file and of pascals.
-pub(super) fn check(design: &Design, frames: &[Vec<f64>], stress: &[Vec<f64>]) -> Option<Broken> {
+/// Looks for broken taxels in frames of values as they are in the file and of pascals: a message, and the frames with the
+/// mean of their neighbours in their places.
+pub(super) fn check(design: &Design, frames: &[Vec<f64>], stress: &[Vec<f64>]) -> Option<(String, Vec<Vec<f64>>)> {
     let taxels = design.sensor.taxels();
     if frames.len() < FRAMES {
         return None;
@@ -57,7 +52,7 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], stress: &[Vec<f64>]) -
          {named:?}, and their neighbours stand for them",
         each.join(", taxel ")
     );
-    Some(Broken { message, mended })
+    Some((message, mended))
 }
 
 /// Whether a taxel's readings are large, and those around it do not go with them.

@@ -25,14 +25,6 @@ const LEAST: f64 = 0.003;
 /// Rows and columns have the same share if each alone has it within this factor.
 const ALIKE: f64 = 2.0;
 
-/// What the frames of contacts show.
-pub(super) struct Found {
-    /// Shares of rows and columns, rounded.
-    pub(super) shares: [f64; 2],
-    /// What to say of it.
-    pub(super) message: String,
-}
-
 /// A share that a frame shows.
 #[derive(Clone, Copy)]
 struct Share {
@@ -48,8 +40,9 @@ struct Estimate {
     each: Option<[Share; 2]>,
 }
 
-/// A share that frames of single contacts, values as they are in the file, show and the design does not state.
-pub(super) fn check(design: &Design, frames: &[Vec<f64>]) -> Option<Found> {
+/// Shares of rows and columns, rounded, that frames of single contacts show and the design does not state, and what to say
+/// of it. Values are as they are in the file.
+pub(super) fn check(design: &Design, frames: &[Vec<f64>]) -> Option<([f64; 2], String)> {
     let known = design.input.crosstalk;
     let of_taxels = |frame: &Vec<f64>| {
         frame.iter().enumerate().map(|(taxel, &value)| design.input.to_pa(taxel, value)).collect::<Vec<f64>>()
@@ -106,13 +99,11 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>]) -> Option<Found> {
             ),
         )
     };
-    Some(Found {
-        shares: [row, column],
-        message: format!(
-            "crosstalk: in {of} of single contacts each taxel reads {reads} as well{has}; F_z comes out about {size:.0} % too \
-             {what}. {remedy}"
-        ),
-    })
+    let message = format!(
+        "crosstalk: in {of} of single contacts each taxel reads {reads} as well{has}; F_z comes out about {size:.0} % too \
+         {what}. {remedy}"
+    );
+    Some(([row, column], message))
 }
 
 /// The mean share by the standard errors, of frames that agree with the middle one.

@@ -111,7 +111,7 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
     if let Some(message) = order::swapped(&design.sensor, frames) {
         return vec![Finding { kind: Kind::Order, message }];
     }
-    let Some(crosstalk::Found { shares: [row, column], message }) = crosstalk::check(design, frames) else {
+    let Some(([row, column], message)) = crosstalk::check(design, frames) else {
         return check_mended(design, frames, matrices);
     };
     // What else is wrong shows without it.
@@ -145,7 +145,7 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
 fn check_mended(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) -> Vec<Finding> {
     // One taxel that is broken would pass for another order, unit or tare.
     let stress = in_pascals(design, frames);
-    let Some(broken::Broken { message, mended }) = broken::check(design, frames, &stress) else {
+    let Some((message, mended)) = broken::check(design, frames, &stress) else {
         return check_whole(design, frames, matrices);
     };
     let mut findings = check_whole(design, &mended, matrices);

@@ -29,7 +29,7 @@ pub(super) fn check(design: &Design, stress: &[Vec<f64>], is_loaded: &[bool], pe
             floor(mean)
         ));
     }
-    let Still { offset, mean } = still(&design.sensor, stress, full_scale)?;
+    let (offset, mean) = still(&design.sensor, stress, full_scale)?;
     let of = count(stress.len());
     let begin = if offset > 0.0 {
         format!("nothing presses in {of}, or it never moves: taxels stay at offsets of up to {offset:.0} Pa")
@@ -60,15 +60,9 @@ fn noise(sensor: &Sensor, stress: &[Vec<f64>], is_loaded: &[bool]) -> Option<(us
     holds(noise, loaded.len()).then_some((noise, loaded.len(), mean))
 }
 
-struct Still {
-    /// The largest offset in pascals, 0 where there is none.
-    offset: f64,
-    /// Mean magnitude in pascals of what varies.
-    mean: f64,
-}
-
-/// Frames in which all taxels stay where they are, but for noise of each.
-fn still(sensor: &Sensor, stress: &[Vec<f64>], full_scale: f64) -> Option<Still> {
+/// Of frames in which all taxels stay where they are, but for noise of each: the largest offset, 0 where there is none, and
+/// the mean magnitude of what varies, in pascals.
+fn still(sensor: &Sensor, stress: &[Vec<f64>], full_scale: f64) -> Option<(f64, f64)> {
     if stress.len() < FRAMES {
         return None;
     }
@@ -95,7 +89,7 @@ fn still(sensor: &Sensor, stress: &[Vec<f64>], full_scale: f64) -> Option<Still>
         return None;
     }
     let mean = rest.iter().flatten().map(|stress| stress.abs()).sum::<f64>() / (frames * taxels as f64);
-    Some(Still { offset: if has_offset { largest(&means) } else { 0.0 }, mean })
+    Some((if has_offset { largest(&means) } else { 0.0 }, mean))
 }
 
 /// Correlation of taxels with those beside them, about the mean of all, from -1 to 1; 0 of values that are all the same.

@@ -16,7 +16,7 @@ pub use labels::Labels;
 
 use crate::sensor::Sensor;
 use crate::status::Status;
-use regions::{Distances, spread};
+use regions::{distances, spread};
 
 /// Most records of contacts that a design can ask for.
 pub const MOST: usize = 8;
@@ -76,7 +76,8 @@ impl ContactForces {
 pub struct Finder {
     contacts: usize,
     columns: usize,
-    distances: Distances,
+    /// Of neighbouring taxels.
+    distances: [u64; 3],
 }
 
 /// The contacts of a frame, to be used again for the next one.
@@ -100,7 +101,7 @@ pub struct Found {
 impl Finder {
     /// For at most so many contacts.
     pub fn new(sensor: &Sensor, contacts: usize) -> Self {
-        Self { contacts, columns: sensor.columns, distances: Distances::of(sensor) }
+        Self { contacts, columns: sensor.columns, distances: distances(sensor) }
     }
 
     /// Records of contacts in a solution: none where there is but one region, which is the frame.

@@ -6,25 +6,20 @@ use crate::sensor::Sensor;
 const NONE: (u64, usize) = (u64::MAX, usize::MAX);
 
 /// Distances of neighbours on a sensor, in whole micrometres: along x, along y, along the diagonal.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Distances([u64; 3]);
-
-impl Distances {
-    pub(super) fn of(sensor: &Sensor) -> Self {
-        let [x, y] = sensor.pitch_mm;
-        Self([x, y, x.hypot(y)].map(|millimetres| (1e3 * millimetres).round() as u64))
-    }
+pub(super) fn distances(sensor: &Sensor) -> [u64; 3] {
+    let [x, y] = sensor.pitch_mm;
+    [x, y, x.hypot(y)].map(|millimetres| (1e3 * millimetres).round() as u64)
 }
 
 /// Gives each taxel of a grid of `columns` to the nearest contact; `contacts` has those of the components, then of all taxels.
 ///
-/// Nearest by steps from neighbour to neighbour, eight of them, each as long as [`Distances`] says: with a square pitch at
+/// Nearest by steps from neighbour to neighbour, eight of them, each as long as [`distances`] says: with a square pitch at
 /// most 8 % longer than the straight line. A taxel as near to two goes to that with the lower number, which is the larger
 /// one. Two passes, as hardware would do it: in raster order, where each looks at four neighbours before it, and back.
 pub(super) fn spread(
     contacts: &mut [Option<usize>],
     columns: usize,
-    Distances([x, y, diagonal]): Distances,
+    [x, y, diagonal]: [u64; 3],
     nearest: &mut Vec<(u64, usize)>,
 ) {
     nearest.clear();
@@ -64,7 +59,7 @@ mod tests {
         let columns = rows[0].len();
         let of = |at: u8| (at != b'.').then(|| usize::from(at - b'a'));
         let mut contacts: Vec<Option<usize>> = rows.iter().flat_map(|row| row.bytes().map(of)).collect();
-        spread(&mut contacts, columns, Distances(distances), &mut Vec::new());
+        spread(&mut contacts, columns, distances, &mut Vec::new());
         let letter = |contact: &Option<usize>| contact.map_or('.', |contact| char::from(b'a' + contact as u8));
         contacts.chunks(columns).map(|row| row.iter().map(letter).collect()).collect()
     }

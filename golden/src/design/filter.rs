@@ -68,7 +68,7 @@ impl Filter {
             Self::None => Some(MatrixFilter::None),
             Self::F1 { l } => Some(MatrixFilter::F1 { l: *l }),
             Self::F2 { p } => Some(MatrixFilter::F2 { p: *p }),
-            Self::F3 { choices, .. } => choices.as_ref().map(|choices| choices.of(matrix)),
+            Self::F3 { choices, .. } => choices.as_ref().map(|choices| choices[matrix.index()]),
         }
     }
 }
@@ -111,13 +111,8 @@ impl fmt::Display for MatrixFilter {
     }
 }
 
-/// A text that is no filter of a matrix.
-#[derive(Debug, thiserror::Error)]
-#[error("\"{0}\" is no filter of a matrix; write \"none\", \"f1 l=40\" or \"f2 p=30\"")]
-pub struct UnknownMatrixFilter(String);
-
 impl FromStr for MatrixFilter {
-    type Err = UnknownMatrixFilter;
+    type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let mut words = text.split_whitespace();
@@ -132,22 +127,9 @@ impl FromStr for MatrixFilter {
             }
             _ => None,
         };
-        parsed.ok_or_else(|| UnknownMatrixFilter(text.to_owned()))
+        parsed.ok_or_else(|| format!("\"{text}\" is no filter of a matrix; write \"none\", \"f1 l=40\" or \"f2 p=30\""))
     }
 }
 
-/// A filter for each of the 13 matrices.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Choices([MatrixFilter; MatrixName::ALL.len()]);
-
-impl Choices {
-    /// Choices in the order of [`MatrixName::ALL`].
-    pub fn new(filters: [MatrixFilter; MatrixName::ALL.len()]) -> Self {
-        Self(filters)
-    }
-
-    /// The filter of one matrix.
-    pub fn of(&self, matrix: MatrixName) -> MatrixFilter {
-        self.0[matrix.index()]
-    }
-}
+/// A filter for each of the 13 matrices, in the order of [`MatrixName::ALL`].
+pub type Choices = [MatrixFilter; MatrixName::ALL.len()];

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::checks::Check;
 use super::keys::FilterKeys;
-use super::{Choices, DesignError, Filter, FilterKind, MatrixFilter, Sensor, UnknownMatrixFilter};
+use super::{Choices, DesignError, Filter, FilterKind, MatrixFilter, Sensor};
 use crate::names::MatrixName;
 
 const KEY: &str = "algorithm.filter";
@@ -50,8 +50,9 @@ pub(super) fn keys(filter: &Filter) -> FilterKeys {
         Filter::F1 { l } => FilterKeys { l: Some(*l as i64), ..keys },
         Filter::F2 { p } => FilterKeys { p: Some(*p), ..keys },
         Filter::F3 { scenes, choices } => {
-            let of =
-                |all: &Choices| MatrixName::ALL.map(|matrix| (matrix.to_string(), all.of(matrix).to_string())).into();
+            let of = |all: &Choices| {
+                MatrixName::ALL.map(|matrix| (matrix.to_string(), all[matrix.index()].to_string())).into()
+            };
             FilterKeys { scenes: Some(scenes.clone()), choices: choices.as_deref().map(of), ..keys }
         }
     }
@@ -66,21 +67,19 @@ fn choices(check: &Check, given: &BTreeMap<String, String>, sensor: &Sensor) -> 
     let mut filters = [MatrixFilter::None; MatrixName::ALL.len()];
     for name in given.keys() {
         let known = name.parse::<MatrixName>();
-        known.map_err(|error| check.value(&format!("{KEY}.choices.{name}"), "is unknown", error.to_string()))?;
+        known.map_err(|error| check.value(&format!("{KEY}.choices.{name}"), "is unknown", error))?;
     }
     for (name, filter) in MatrixName::ALL.into_iter().zip(&mut filters) {
         let key = format!("choices.{name}");
         let whole = format!("{KEY}.{key}");
         let remedy = "give a filter for each of the 13 matrices, or remove the choices and run `sptfra tune-filter`";
         let text = given.get(&name.to_string()).ok_or_else(|| check.value(&whole, "is missing", remedy))?;
-        *filter = text
-            .parse()
-            .map_err(|error: UnknownMatrixFilter| check.value(&whole, "cannot be read", error.to_string()))?;
+        *filter = text.parse().map_err(|error: String| check.value(&whole, "cannot be read", error))?;
         match *filter {
             MatrixFilter::None => (),
             MatrixFilter::F1 { l } => drop(band(check, &key, i64::try_from(l).unwrap_or(-1), sensor)?),
             MatrixFilter::F2 { p } => drop(check.above_zero(&whole, p, f64::MAX, "")?),
         }
     }
-    Ok(Choices::new(filters))
+    Ok(filters)
 }

@@ -44,7 +44,7 @@ pub use error::DesignError;
 pub use expected_error::{Expected, ExpectedError};
 pub(crate) use files::Beside;
 pub use files::{CALIBRATION_FILE, CURVE_FILE, WEIGHTS_FILE};
-pub use filter::{Choices, Filter, FilterKind, MatrixFilter, UnknownMatrixFilter};
+pub use filter::{Choices, Filter, FilterKind, MatrixFilter};
 pub use hardware::{
     CalibrationIn, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise, Overrun, STREAM_BITS, Samples, Scaling,
 };

@@ -20,15 +20,8 @@ pub(super) fn table(text: &str, origin: &str) -> Result<Table, DesignError> {
     Ok(table)
 }
 
-/// A base, as it was read.
-struct Base {
-    text: String,
-    /// Its place, for messages.
-    origin: String,
-}
-
-/// Puts the base's keys under those of `own`; `None` if it names no base.
-fn merge(check: &Check, own: &mut Table, beside: Beside<'_>) -> Result<Option<Base>, DesignError> {
+/// Puts the base's keys under those of `own`: the base's text and place, or `None` if it names no base.
+fn merge(check: &Check, own: &mut Table, beside: Beside<'_>) -> Result<Option<[String; 2]>, DesignError> {
     let Some(name) = own.get("base").and_then(Value::as_str).map(str::to_owned) else { return Ok(None) };
     let path = beside.path(&name);
     let text = beside.read(&name).map_err(|source| {
@@ -45,13 +38,13 @@ fn merge(check: &Check, own: &mut Table, beside: Beside<'_>) -> Result<Option<Ba
     base::relocate(&mut keys, &name);
     own.remove("base");
     base::under(own, keys);
-    Ok(Some(Base { text, origin }))
+    Ok(Some([text, origin]))
 }
 
 /// The keys of a design file, with those of its base; `beside` are the files that it names.
 pub(super) fn keys(text: &str, origin: &str, beside: Beside<'_>) -> Result<DesignKeys, DesignError> {
     let mut own = table(text, origin)?;
-    let Some(base) = merge(&Check { origin }, &mut own, beside)? else {
+    let Some([base, place]) = merge(&Check { origin }, &mut own, beside)? else {
         return toml::from_str(text).map_err(|error| syntax_position(&error, text, origin));
     };
     own.try_into().map_err(|error: toml::de::Error| {
@@ -60,8 +53,8 @@ pub(super) fn keys(text: &str, origin: &str, beside: Beside<'_>) -> Result<Desig
             let error = toml::from_str::<DesignKeys>(text).err()?;
             (!error.message().starts_with("missing")).then(|| syntax_position(&error, text, origin))
         };
-        let place = at(text, origin).or_else(|| at(&base.text, &base.origin));
-        place.unwrap_or_else(|| syntax_position(&error, text, origin))
+        let found = at(text, origin).or_else(|| at(&base, &place));
+        found.unwrap_or_else(|| syntax_position(&error, text, origin))
     })
 }
 

@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 
 use crate::design::Design;
 use crate::kernel::{self, Kernel};
-pub use crate::names::{MatrixName, UnknownMatrix};
+pub use crate::names::MatrixName;
 use crate::parity::{FoldedMatrix, Orbits};
 use crate::sensor::Sensor;
 use factor::{Factors, Spectrum};

@@ -75,7 +75,7 @@ impl Choice {
         for candidate in self.candidates.iter().filter(|candidate| candidate.chosen) {
             filters[candidate.matrix.index()] = candidate.filter;
         }
-        Choices::new(filters)
+        filters
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::designs::design;
-use golden::design::{Choices, Design, Estimator, Filter, MatrixFilter};
+use golden::design::{Design, Estimator, Filter, MatrixFilter};
 use golden::filter::FilteredMatrices;
 use golden::matrices::{Matrices, MatrixName};
 use golden::scene::{Scene, SceneFrame};
@@ -80,7 +80,7 @@ fn the_cheapest_candidate_of_each_matrix_is_chosen() {
         for one in [chosen[0], &of_matrix[0], &of_matrix[17]] {
             let mut filters = [MatrixFilter::None; 13];
             filters[one.matrix.index()] = one.filter;
-            let alone = Filter::F3 { scenes: Vec::new(), choices: Some(Box::new(Choices::new(filters))) };
+            let alone = Filter::F3 { scenes: Vec::new(), choices: Some(Box::new(filters)) };
             let filtered = FilteredMatrices::new(&matrices, &alone).unwrap();
             assert_eq!(filtered.nnz(one.matrix), one.nnz);
             let e_mu = mean_error(&Solver::from_parts(&design, matrices.clone(), filtered), &frames).unwrap();
@@ -99,13 +99,13 @@ fn the_first_of_equal_candidates_is_chosen() {
     let choice = search(&design, &frames);
     assert!((choice.e_mu_unfiltered - 50.0).abs() < 1e-12);
     for matrix in MatrixName::ALL {
-        assert_eq!(choice.choices().of(matrix), MatrixFilter::F1 { l: 90 });
+        assert_eq!(choice.choices()[matrix.index()], MatrixFilter::F1 { l: 90 });
     }
     // With an error of 0 all cost the same: the first, a band, wins.
     frames[0].friction = 0.0;
     let choices = search(&design, &frames).choices();
     for matrix in MatrixName::ALL {
-        assert_eq!(choices.of(matrix), MatrixFilter::F1 { l: 10 });
+        assert_eq!(choices[matrix.index()], MatrixFilter::F1 { l: 10 });
     }
 }
 

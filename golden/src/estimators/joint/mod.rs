@@ -11,7 +11,7 @@ mod level_set;
 mod network;
 mod weights;
 
-use super::interface::{Estimate, Inputs, RANGE};
+use super::{Estimate, Inputs, RANGE};
 use crate::numbers::magnitude;
 use crate::status::Status;
 pub use constants::{

@@ -3,7 +3,7 @@
 
 mod level_set;
 
-use super::interface::{Contact, RANGE};
+use super::{Contact, RANGE};
 use crate::status::Status;
 pub use level_set::LineScratch;
 
