@@ -3,10 +3,10 @@
 use nalgebra::DVector;
 
 use super::count;
-use crate::contacts::{Finder, Found};
+use crate::contacts::{Finder, Regions};
 use crate::design::Design;
 use crate::matrices::{Matrices, MatrixName};
-use crate::solver::reading::{Given, Reader, Reading};
+use crate::solver::reading::{FrameInput, Reader, Reading};
 
 /// What is to be said of a design that counts contacts and is solved as if there were one: in how many frames there are
 /// more. `frames` are the loaded ones: noise has many contacts.
@@ -16,9 +16,9 @@ pub(super) fn check(design: &Design, frames: &[&Vec<f64>], matrices: &Matrices) 
     }
     let (reader, finder) = (Reader::new(design), Finder::new(&design.sensor, 1));
     let inverse = matrices.folded(MatrixName::C33inv);
-    let (mut b, mut found) = (DVector::zeros(reader.taxels()), Found::default());
+    let (mut b, mut found) = (DVector::zeros(reader.taxels()), Regions::default());
     let several = |frame: &&&Vec<f64>| {
-        let Ok(Reading::Contact { .. }) = reader.read(Given::Values(frame), &mut b) else { return false };
+        let Ok(Reading::Contact { .. }) = reader.read(FrameInput::Values(frame), &mut b) else { return false };
         let weight: Vec<f64> = (&*inverse * &b).iter().map(|force| (-force).max(0.0)).collect();
         finder.count(&weight, &mut found);
         found.contacts > 1

@@ -82,7 +82,7 @@ pub struct Finder {
 
 /// The contacts of a frame, to be used again for the next one.
 #[derive(Clone, Debug, Default)]
-pub struct Found {
+pub struct Regions {
     /// Contact of each taxel, the nearest: 0 is the one that presses most. Without any contact `None`.
     pub regions: Vec<Option<usize>>,
     /// Taxels that each contact touches; as many as there are contacts with a region, at most those that were asked for.
@@ -113,9 +113,9 @@ impl Finder {
     ///
     /// Of more contacts than asked for those that press least have no region: their taxels go to the nearest of the
     /// others. If every component has less than [`SHARE`] of all, the largest is the one contact that there is.
-    pub fn find(&self, weight: &[f64], found: &mut Found) {
+    pub fn find(&self, weight: &[f64], found: &mut Regions) {
         self.count(weight, found);
-        let Found { regions, taxels, contacts, labels, components, numbers, nearest, .. } = found;
+        let Regions { regions, taxels, contacts, labels, components, numbers, nearest, .. } = found;
         let kept = &components[..self.contacts.min(*contacts)];
         taxels.clear();
         taxels.extend(kept.iter().map(|&(_, _, taxels)| taxels));
@@ -130,8 +130,8 @@ impl Finder {
     }
 
     /// Counts the contacts in what presses, one value for each taxel. Of what is found only the number is new.
-    pub fn count(&self, weight: &[f64], found: &mut Found) {
-        let Found { contacts, touched, labels, components, .. } = found;
+    pub fn count(&self, weight: &[f64], found: &mut Regions) {
+        let Regions { contacts, touched, labels, components, .. } = found;
         let largest = weight.iter().copied().fold(0.0, f64::max);
         touched.clear();
         touched.extend(weight.iter().map(|&weight| weight > SHARE * largest));
@@ -155,14 +155,14 @@ impl Finder {
 mod tests {
     use super::*;
 
-    fn find(contacts: usize, weights: [[f64; 6]; 3]) -> Found {
+    fn find(contacts: usize, weights: [[f64; 6]; 3]) -> Regions {
         let sensor = Sensor { columns: 6, rows: 3, pitch_mm: [2.0, 2.0], depth_mm: 2.0 };
-        let mut found = Found::default();
+        let mut found = Regions::default();
         Finder::new(&sensor, contacts).find(weights.as_flattened(), &mut found);
         found
     }
 
-    fn regions(found: &Found) -> String {
+    fn regions(found: &Regions) -> String {
         found.regions.iter().map(|contact| contact.map_or('.', |contact| char::from(b'0' + contact as u8))).collect()
     }
 
@@ -220,7 +220,7 @@ mod tests {
             *weight = f64::from(u8::from((index % 10 + index / 10) % 2 == 0));
         }
         weights[22] = 1.5;
-        let mut found = Found::default();
+        let mut found = Regions::default();
         Finder::new(&sensor, 4).find(&weights, &mut found);
         assert_eq!((found.contacts, found.taxels.as_slice()), (1, &[1][..]));
         assert!(found.regions.iter().all(|&contact| contact == Some(0)));

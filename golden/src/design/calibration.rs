@@ -2,7 +2,7 @@
 
 use super::DesignError;
 use super::curve::{Curve, is_header_of_points};
-use super::files::Beside;
+use super::files::FileSource;
 use super::rows::{Row, Rows};
 use crate::frames::push_row;
 
@@ -26,7 +26,7 @@ impl Calibration {
     /// made for it.
     pub(super) fn load(
         file: &str,
-        beside: Beside<'_>,
+        beside: FileSource<'_>,
         taxels: usize,
         curve: Option<&Curve>,
     ) -> Result<Self, DesignError> {

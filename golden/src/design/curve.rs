@@ -2,7 +2,7 @@
 
 use super::DesignError;
 use super::checks::Check;
-use super::files::Beside;
+use super::files::FileSource;
 use super::hardware::{Hardware, Samples};
 use super::keys::CurveKey;
 use super::rows::{Row, Rows};
@@ -38,7 +38,7 @@ impl Curve {
     pub(super) fn new(
         check: &Check,
         key: CurveKey,
-        beside: Beside<'_>,
+        beside: FileSource<'_>,
         hardware: &Hardware,
     ) -> Result<Self, DesignError> {
         match key {
@@ -74,7 +74,7 @@ impl Curve {
     }
 
     /// Reads one line `count,pascals` for each point, or those behind the taxels of a file of `sptfra export-calibration`.
-    fn load(file: &str, beside: Beside<'_>) -> Result<Self, DesignError> {
+    fn load(file: &str, beside: FileSource<'_>) -> Result<Self, DesignError> {
         let table = Rows::read(file, beside)?;
         let header = table.rows.first().and_then(Row::header).unwrap_or_default();
         let name = |place: usize| header.get(place).map_or("", String::as_str);

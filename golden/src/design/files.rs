@@ -16,14 +16,14 @@ pub const WEIGHTS_FILE: &str = "weights.csv";
 
 /// Where the files are that a design names.
 #[derive(Clone, Copy)]
-pub(crate) enum Beside<'a> {
+pub(crate) enum FileSource<'a> {
     /// Relative to this folder.
     Folder(&'a Path),
     /// Name and content, in memory.
     Memory(&'a [(&'a str, String)]),
 }
 
-impl<'a> Beside<'a> {
+impl<'a> FileSource<'a> {
     /// The files beside a design file.
     pub(crate) fn folder_of(design: &'a Path) -> Self {
         Self::Folder(design.parent().unwrap_or(Path::new("")))

@@ -7,7 +7,7 @@ use super::DesignError;
 use super::calibration::Calibration;
 use super::checks::Check;
 use super::curve::Curve;
-use super::files::Beside;
+use super::files::FileSource;
 use super::hardware::Hardware;
 use super::keys::{DeadKey, SensorKeys};
 use super::rules;
@@ -182,7 +182,7 @@ impl Input {
     pub(super) fn new(
         check: &Check,
         keys: SensorKeys,
-        beside: Beside<'_>,
+        beside: FileSource<'_>,
         taxels: usize,
         hardware: &Hardware,
     ) -> Result<Self, DesignError> {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::checks::Check;
-use super::files::{Beside, sha256};
+use super::files::{FileSource, sha256};
 use super::keys::{AlgorithmKeys, CorrectionKeys};
 use super::{DesignError, Kernel, Regularisation, Sensor, Tension};
 use crate::estimators::joint::{CUBIC_LIMIT, Correction, JointConstants, TrainingSet};
@@ -107,7 +107,7 @@ pub(super) fn correction(
     check: &Check,
     keys: &CorrectionKeys,
     sensor: &Sensor,
-    beside: Beside<'_>,
+    beside: FileSource<'_>,
 ) -> Result<Correction, DesignError> {
     const KEY: &str = "algorithm.correction";
     let CorrectionKeys { half_window: [x, y], file, sha256: hash } = keys;

@@ -42,7 +42,7 @@ pub use checks::is_name;
 pub use curve::{Curve, MOST_SEGMENTS};
 pub use error::DesignError;
 pub use expected_error::{Expected, ExpectedError};
-pub(crate) use files::Beside;
+pub(crate) use files::FileSource;
 pub use files::{CALIBRATION_FILE, CURVE_FILE, WEIGHTS_FILE};
 pub use filter::{Choices, Filter, FilterKind, MatrixFilter};
 pub use hardware::{
@@ -149,7 +149,7 @@ impl Design {
     ///
     /// Every way a file can be wrong, see [`DesignError`]; the message names the file, the key and the remedy.
     pub fn load(path: &Path) -> Result<Self, DesignError> {
-        from_text(&text_of(path)?, &path.display().to_string(), Beside::folder_of(path))
+        from_text(&text_of(path)?, &path.display().to_string(), FileSource::folder_of(path))
     }
 
     /// As [`Design::load`], without the constants that were fitted to the sensor, be they those of another one.
@@ -158,7 +158,7 @@ impl Design {
     ///
     /// As [`Design::load`], but for what is wrong with these constants.
     pub fn load_unfitted(path: &Path) -> Result<Self, DesignError> {
-        let (origin, beside) = (path.display().to_string(), Beside::folder_of(path));
+        let (origin, beside) = (path.display().to_string(), FileSource::folder_of(path));
         let keys = resolve::unfitted(read::keys(&text_of(path)?, &origin, beside)?);
         resolve::design(keys, &origin, beside)
     }
@@ -170,7 +170,7 @@ impl Design {
     ///
     /// As [`Design::load`], without the reading.
     pub fn from_toml(text: &str, origin: &str) -> Result<Self, DesignError> {
-        from_text(text, origin, Beside::folder_of(Path::new(origin)))
+        from_text(text, origin, FileSource::folder_of(Path::new(origin)))
     }
 
     /// As [`Design::from_toml`], with the files that the design names as pairs of name and content, as
@@ -180,7 +180,7 @@ impl Design {
     ///
     /// As [`Design::from_toml`]; a file that is not among them is one that cannot be read.
     pub fn from_parts(text: &str, origin: &str, files: &[(&str, String)]) -> Result<Self, DesignError> {
-        from_text(text, origin, Beside::Memory(files))
+        from_text(text, origin, FileSource::Memory(files))
     }
 
     /// The files of a design: those that its file names, none of which is read, and that file.
@@ -189,7 +189,8 @@ impl Design {
     ///
     /// [`DesignError::Read`] and [`DesignError::Syntax`].
     pub fn inputs_at(path: &Path) -> Result<Vec<PathBuf>, DesignError> {
-        let mut files = read::files_named_in(&text_of(path)?, &path.display().to_string(), Beside::folder_of(path))?;
+        let mut files =
+            read::files_named_in(&text_of(path)?, &path.display().to_string(), FileSource::folder_of(path))?;
         files.push(path.to_path_buf());
         Ok(files)
     }
@@ -219,7 +220,7 @@ impl Design {
     }
 }
 
-fn from_text(text: &str, origin: &str, beside: Beside<'_>) -> Result<Design, DesignError> {
+fn from_text(text: &str, origin: &str, beside: FileSource<'_>) -> Result<Design, DesignError> {
     resolve::design(read::keys(text, origin, beside)?, origin, beside)
 }
 

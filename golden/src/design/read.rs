@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use toml::{Table, Value};
 
 use super::checks::Check;
-use super::files::Beside;
+use super::files::FileSource;
 use super::keys::{CurveKey, DesignKeys};
 use super::{DesignError, base, old_format, schema};
 
@@ -21,7 +21,7 @@ pub(super) fn table(text: &str, origin: &str) -> Result<Table, DesignError> {
 }
 
 /// Puts the base's keys under those of `own`: the base's text and place, or `None` if it names no base.
-fn merge(check: &Check, own: &mut Table, beside: Beside<'_>) -> Result<Option<[String; 2]>, DesignError> {
+fn merge(check: &Check, own: &mut Table, beside: FileSource<'_>) -> Result<Option<[String; 2]>, DesignError> {
     let Some(name) = own.get("base").and_then(Value::as_str).map(str::to_owned) else { return Ok(None) };
     let path = beside.path(&name);
     let text = beside.read(&name).map_err(|source| {
@@ -42,7 +42,7 @@ fn merge(check: &Check, own: &mut Table, beside: Beside<'_>) -> Result<Option<[S
 }
 
 /// The keys of a design file, with those of its base; `beside` are the files that it names.
-pub(super) fn keys(text: &str, origin: &str, beside: Beside<'_>) -> Result<DesignKeys, DesignError> {
+pub(super) fn keys(text: &str, origin: &str, beside: FileSource<'_>) -> Result<DesignKeys, DesignError> {
     let mut own = table(text, origin)?;
     let Some([base, place]) = merge(&Check { origin }, &mut own, beside)? else {
         return toml::from_str(text).map_err(|error| syntax_position(&error, text, origin));
@@ -59,7 +59,7 @@ pub(super) fn keys(text: &str, origin: &str, beside: Beside<'_>) -> Result<Desig
 }
 
 /// The files that a design names, and those of its base.
-pub(super) fn files_named_in(text: &str, origin: &str, beside: Beside<'_>) -> Result<Vec<PathBuf>, DesignError> {
+pub(super) fn files_named_in(text: &str, origin: &str, beside: FileSource<'_>) -> Result<Vec<PathBuf>, DesignError> {
     let base = table(text, origin)?.get("base").and_then(Value::as_str).map(str::to_owned);
     let DesignKeys { sensor, algorithm, .. } = keys(text, origin, beside)?;
     let weights = algorithm.correction.map(|correction| correction.file);

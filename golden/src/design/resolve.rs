@@ -1,7 +1,7 @@
 //! From the keys of a design file to a checked [`Design`], and back.
 
 use super::checks::{self, Check};
-use super::files::{Beside, CALIBRATION_FILE, CURVE_FILE, WEIGHTS_FILE};
+use super::files::{CALIBRATION_FILE, CURVE_FILE, FileSource, WEIGHTS_FILE};
 use super::joint::Reads;
 use super::keys::{AlgorithmKeys, CurveKey, DeadKey, DesignKeys, FORMAT, NoiseKey, SensorKeys, SlipKeys};
 use super::{
@@ -10,7 +10,7 @@ use super::{
 };
 
 /// `beside` are the files that the design names.
-pub(super) fn design(keys: DesignKeys, origin: &str, beside: Beside<'_>) -> Result<Design, DesignError> {
+pub(super) fn design(keys: DesignKeys, origin: &str, beside: FileSource<'_>) -> Result<Design, DesignError> {
     let check = Check { origin };
     let DesignKeys { name, sensor: keys, algorithm, hardware, .. } = keys;
     checks::name(&check, &name)?;

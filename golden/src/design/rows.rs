@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::DesignError;
-use super::files::Beside;
+use super::files::FileSource;
 use crate::separator::{self, Marks, Separator, Unclear};
 
 /// A line that is neither blank nor a remark.
@@ -46,7 +46,7 @@ pub(super) struct Rows {
 
 impl Rows {
     /// Reads a file of those `beside` the design. A byte order mark is skipped.
-    pub(super) fn read(file: &str, beside: Beside<'_>) -> Result<Self, DesignError> {
+    pub(super) fn read(file: &str, beside: FileSource<'_>) -> Result<Self, DesignError> {
         let path = beside.path(file);
         let text = beside.read(file).map_err(|source| DesignError::Read { path: path.clone(), source })?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);

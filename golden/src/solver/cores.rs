@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::reading::{Given, Past};
+use super::reading::{FrameInput, Past};
 use super::{Slips, Solution, Solver, SolverError, Status};
 use crate::contacts::ContactForces;
 
@@ -44,14 +44,14 @@ impl Solver {
         }
         let decoded = self.reader.follows().then(|| self.decoded(past, values.chunks(taxels))).transpose()?;
         let frames = match &decoded {
-            Some(decoded) => decoded.given(),
-            None => values.chunks(taxels).map(Given::Values).collect(),
+            Some(decoded) => decoded.frames(),
+            None => values.chunks(taxels).map(FrameInput::Values).collect(),
         };
         let pieces: Vec<_> = frames.chunks(PIECE).zip(places).collect();
         pieces.into_par_iter().try_for_each_init(
             || (self.workspace(), Vec::new()),
             |(workspace, solutions), (frames, mut place)| {
-                self.solve_given(workspace, frames, solutions)?;
+                self.solve_frames(workspace, frames, solutions)?;
                 solutions.iter().enumerate().for_each(|(index, solution)| put(&mut place, index, solution));
                 Ok(())
             },

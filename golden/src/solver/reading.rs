@@ -36,7 +36,7 @@ pub(crate) struct Reader {
 
 /// A frame to be solved.
 #[derive(Clone, Copy)]
-pub(crate) enum Given<'a> {
+pub(crate) enum FrameInput<'a> {
     /// Values as the sensor delivers them.
     Values(&'a [f64]),
     /// What [`Reader::decode`] and [`Reader::follow`] have made of them, and the noise left in it.
@@ -94,10 +94,10 @@ impl Reader {
     }
 
     /// Reads a frame into `b` of length m.
-    pub(crate) fn read(&self, frame: Given<'_>, b: &mut DVector<f64>) -> Result<Reading, SolverError> {
+    pub(crate) fn read(&self, frame: FrameInput<'_>, b: &mut DVector<f64>) -> Result<Reading, SolverError> {
         let (status, noise_left) = match frame {
-            Given::Values(values) => (self.decode(values, b.as_mut_slice())?, 1.0),
-            Given::Decoded(stress, status, noise_left) => {
+            FrameInput::Values(values) => (self.decode(values, b.as_mut_slice())?, 1.0),
+            FrameInput::Decoded(stress, status, noise_left) => {
                 b.as_mut_slice().copy_from_slice(stress);
                 (status, noise_left)
             }

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use super::{Solution, Solver, Status, quotient};
-use crate::contacts::{ContactForces, Found};
+use crate::contacts::{ContactForces, Regions};
 use crate::estimators::Contact;
 use crate::matrices::{Matrices, MatrixName};
 use crate::parity::COMPONENTS;
@@ -49,7 +49,7 @@ struct Separation {
     noise_left: f64,
     /// Its stress, in pascals.
     whole: DVector<f64>,
-    found: Found,
+    found: Regions,
     /// Forces `f_x, f_y, f_z` of each taxel that are separated, in newtons without the estimator's gain.
     forces: [Vec<f64>; 3],
     /// `(F_x, F_y)` of each contact in the round before, in newtons.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::batch::{self, BatchFrame};
-use super::reading::{Given, Past, Reading};
+use super::reading::{FrameInput, Past, Reading};
 use super::separate::{Counted, Separations};
 use super::{Estimators, OfPlan, Products, Slips, Solution, Solver, SolverError, Status};
 use crate::estimators::{Contact, FrictionScratch, Inputs};
@@ -45,9 +45,9 @@ pub(super) struct Decoded {
 
 impl Decoded {
     /// The frames, to be solved.
-    pub(super) fn given(&self) -> Vec<Given<'_>> {
+    pub(super) fn frames(&self) -> Vec<FrameInput<'_>> {
         let frames = self.stress.chunks(self.taxels).zip(&self.marks);
-        frames.map(|(stress, &(status, noise_left))| Given::Decoded(stress, status, noise_left)).collect()
+        frames.map(|(stress, &(status, noise_left))| FrameInput::Decoded(stress, status, noise_left)).collect()
     }
 }
 
@@ -166,7 +166,7 @@ impl Solver {
     ) -> Result<Option<Inputs<'a>>, SolverError> {
         self.fit(workspace);
         let Workspace { b, products, .. } = workspace;
-        let Reading::Contact { contact, .. } = self.reader.read(Given::Values(frame), b)? else { return Ok(None) };
+        let Reading::Contact { contact, .. } = self.reader.read(FrameInput::Values(frame), b)? else { return Ok(None) };
         let b = b.as_slice();
         Ok(match (&self.products, products) {
             (Products::Paper(paper), Scratch::Paper(frame)) => Some(inputs(&paper.engine, frame, b, contact)),
@@ -190,11 +190,11 @@ impl Solver {
     ) -> Result<(), SolverError> {
         self.fit(workspace);
         if !self.reader.follows() {
-            let given: Vec<Given<'_>> = frames.iter().map(|frame| Given::Values(frame.as_ref())).collect();
-            return self.solve_given(workspace, &given, solutions);
+            let inputs: Vec<FrameInput<'_>> = frames.iter().map(|frame| FrameInput::Values(frame.as_ref())).collect();
+            return self.solve_frames(workspace, &inputs, solutions);
         }
         let decoded = self.decoded(&mut workspace.past, frames.iter().map(AsRef::as_ref))?;
-        self.solve_given(workspace, &decoded.given(), solutions)
+        self.solve_frames(workspace, &decoded.frames(), solutions)
     }
 
     /// Decodes frames that follow each other: without creep, and averaged.
@@ -217,10 +217,10 @@ impl Solver {
     }
 
     /// As [`Solver::solve_batch`], of frames that are decoded.
-    pub(super) fn solve_given(
+    pub(super) fn solve_frames(
         &self,
         workspace: &mut Workspace,
-        frames: &[Given<'_>],
+        frames: &[FrameInput<'_>],
         solutions: &mut Vec<Solution>,
     ) -> Result<(), SolverError> {
         self.fit(workspace);
@@ -260,7 +260,7 @@ impl Solver {
         &self,
         workspace: &mut Workspace,
         batch: &mut BatchFrame<W>,
-        frames: &[Given<'_>],
+        frames: &[FrameInput<'_>],
         solutions: &mut [Solution],
     ) -> Result<(), SolverError> {
         for (frames, solutions) in frames.chunks(FRAMES).zip(solutions.chunks_mut(FRAMES)) {

@@ -114,7 +114,7 @@ impl Stored<4> for Dense {
 }
 
 /// What a list finds of a frame.
-struct Found {
+struct Results {
     sums: ByPq<f64>,
     u: [Vec<f64>; 3],
     field: [Vec<f64>; 3],
@@ -127,25 +127,25 @@ fn execute<T: Float, S: Stored<W>, const W: usize>(
     stored: S,
     images: Vec<[usize; W]>,
     stress: &[f64],
-) -> Found {
+) -> Results {
     let engine: Engine<T, S, W> = Engine::new(list, stored, images, stress.len());
     let mut frame = engine.frame();
     frame.stress = stress.iter().map(|&stress| T::of(stress)).collect();
     engine.until_friction(&mut frame);
     let mut field: [Vec<f64>; 3] = std::array::from_fn(|_| vec![f64::NAN; stress.len()]);
     engine.field(MU.map(T::of), &mut frame, |p, taxel, force| field[p][taxel] = force.into());
-    Found { sums: frame.sums.map(|sums| sums.map(Into::into)), u: frame.u.each_ref().map(|u| real(u)), field }
+    Results { sums: frame.sums.map(|sums| sums.map(Into::into)), u: frame.u.each_ref().map(|u| real(u)), field }
 }
 
-fn by_taxel(list: ProductList, dense: &Dense, stress: &[f64]) -> Found {
+fn by_taxel(list: ProductList, dense: &Dense, stress: &[f64]) -> Results {
     execute::<f64, _, 1>(list, dense.clone(), (0..stress.len()).map(|taxel| [taxel]).collect(), stress)
 }
 
-fn by_orbit(list: ProductList, dense: &Dense, stress: &[f64]) -> Found {
+fn by_orbit(list: ProductList, dense: &Dense, stress: &[f64]) -> Results {
     execute::<f64, _, 4>(list, dense.clone(), dense.orbits.all(), stress)
 }
 
-fn assert_same(one: &Found, other: &Found, share: f64) {
+fn assert_same(one: &Results, other: &Results, share: f64) {
     let close = |one: &[f64], other: &[f64], what: &str| {
         let largest = one.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         for (one, other) in one.iter().zip(other) {
@@ -191,7 +191,7 @@ fn without_a_field_the_search_finds_the_same() {
         let (with, without) =
             (by_taxel(ProductList::paper(), &dense, &stress), by_taxel(list.folded(), &dense, &stress));
         assert!(without.field.iter().flatten().all(|force| force.is_nan()), "nothing is put there");
-        assert_same(&Found { field: without.field.clone(), ..with }, &without, 1e-10);
+        assert_same(&Results { field: without.field.clone(), ..with }, &without, 1e-10);
     }
 }
 

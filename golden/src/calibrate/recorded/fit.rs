@@ -29,7 +29,7 @@ const ROUNDS: usize = 3;
 const SMOOTH: [f64; 4] = [1.0, 0.1, 0.01, 0.001];
 
 /// Holds with everything that the fits of one recording share.
-pub(super) struct Work<'a> {
+pub(super) struct Fitter<'a> {
     design: &'a Design,
     pub(super) holds: &'a Holds,
     pub(super) loads: Vec<f64>,
@@ -48,7 +48,7 @@ pub(super) struct Work<'a> {
 
 /// What was found: a curve, and factors on the taxels' gains.
 #[derive(Clone, Debug)]
-pub(super) struct Found {
+pub(super) struct Constants {
     pub(super) shape: Shape,
     pub(super) delta: Vec<f64>,
     pub(super) kind: Kind,
@@ -63,7 +63,7 @@ pub(super) struct Validated {
     pub(super) rms: f64,
 }
 
-impl<'a> Work<'a> {
+impl<'a> Fitter<'a> {
     /// Of holds that the solver can answer; the number of those that it cannot.
     pub(super) fn new(design: &'a Design, holds: &'a mut Holds, solver: &mut Rows) -> (Self, usize) {
         let before = (0..design.sensor.taxels()).map(|taxel| {
@@ -123,14 +123,14 @@ impl<'a> Work<'a> {
     }
 
     /// Stress that presses in pascals, of readings above rest.
-    pub(super) fn stress(&self, found: &Found, x: &[f64]) -> Vec<f64> {
+    pub(super) fn stress(&self, found: &Constants, x: &[f64]) -> Vec<f64> {
         let terms = self.terms(&[], &[]);
         let gain = |taxel: usize| self.before[taxel] * (1.0 + found.delta[taxel]);
         x.iter().enumerate().map(|(taxel, &x)| gain(taxel) * found.shape.at(taxel, x, &terms)).collect()
     }
 
     /// What the stress weighs, for a curve and gains.
-    fn look(&mut self, found: &Found, solver: &mut Rows) {
+    fn look(&mut self, found: &Constants, solver: &mut Rows) {
         for hold in 0..self.rows.len() {
             let stress = self.stress(found, &self.holds.all[hold].x);
             // One that has no answer any more keeps its weights.
@@ -259,7 +259,7 @@ impl<'a> Work<'a> {
     }
 
     /// Whether the recording says more of each taxel's gain than was assumed; nothing of one that no contact was on.
-    pub(super) fn told(&self, found: &Found) -> Vec<Option<bool>> {
+    pub(super) fn told(&self, found: &Constants) -> Vec<Option<bool>> {
         let shares = self.shares(&found.shape);
         let Prior { range, noise } = found.prior.unwrap_or(Prior { range: 0.0, noise: f64::INFINITY });
         shares.with(&self.design.sensor, range).told(noise.min(1e12))
@@ -292,11 +292,11 @@ impl<'a> Work<'a> {
     }
 
     /// Finds curve and gains.
-    pub(super) fn find(&mut self, solver: &mut Rows) -> Found {
+    pub(super) fn find(&mut self, solver: &mut Rows) -> Constants {
         let all: Vec<usize> = (0..self.loads.len()).collect();
         let none = vec![0.0; self.before.len()];
         let kind = self.kinds()[0];
-        let mut found = Found { shape: self.fit_shape(kind, &none, &all), delta: none.clone(), kind, prior: None };
+        let mut found = Constants { shape: self.fit_shape(kind, &none, &all), delta: none.clone(), kind, prior: None };
         for round in 0..ROUNDS {
             self.look(&found, solver);
             if round < 2 {
@@ -337,7 +337,7 @@ impl<'a> Work<'a> {
 
     /// Standard deviation of the gains, and how far those of one half of the parts are from the other's: root mean square over
     /// the square root of two.
-    pub(super) fn halves(&self, found: &Found, prior: Prior) -> [f64; 2] {
+    pub(super) fn halves(&self, found: &Constants, prior: Prior) -> [f64; 2] {
         let half =
             |odd: usize| -> Vec<usize> { self.parts().skip(odd).step_by(2).flat_map(|[_, left]| left).collect() };
         let [a, b] = [0, 1].map(|odd| self.fit_gains(&found.shape, prior, &half(odd)));
@@ -350,13 +350,13 @@ impl<'a> Work<'a> {
     }
 
     /// The errors at what it was fitted to.
-    pub(super) fn fitted(&self, found: &Found) -> Validated {
+    pub(super) fn fitted(&self, found: &Constants) -> Validated {
         let all: Vec<usize> = (0..self.loads.len()).collect();
         self.figure(self.errors(&found.shape, &self.weights(&found.delta), &all))
     }
 
     /// Whether what is found goes with the loads: their correlation.
-    pub(super) fn follows(&self, found: &Found) -> f64 {
+    pub(super) fn follows(&self, found: &Constants) -> f64 {
         let errors = self.fitted(found).errors;
         correlation(errors.iter().zip(&self.loads).map(|(error, load)| (load * (1.0 + error), *load)))
     }

@@ -1,6 +1,6 @@
 //! Constants from frames with measured forces.
 
-use super::fit::{Validated, Work};
+use super::fit::{Fitter, Validated};
 use super::loads::Follow;
 use super::report::{Errors, Hold, Recorded, TaxelGain};
 use super::rows::Rows;
@@ -43,37 +43,38 @@ pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> 
     let mut holds = holds::part(design, frames, &measured).map_err(wrong)?;
     remarks.append(&mut holds.remarks);
     let mut solver = Rows::new(design)?;
-    let (mut work, lost) = Work::new(design, &mut holds, &mut solver);
+    let (mut fitter, lost) = Fitter::new(design, &mut holds, &mut solver);
     if lost > 0 {
         remarks
             .push(format!("{} left out, whose readings no contact makes: see `sptfra check`", counted(lost, "hold")));
     }
-    if work.loads.is_empty() {
+    if fitter.loads.is_empty() {
         return Err(wrong(("no hold has an answer".to_owned(), "run `sptfra check` on the frames".to_owned())));
     }
-    let found = work.find(&mut solver);
-    let follows = work.follows(&found);
-    if work.levels.len() > 1 && work.span() > 1.3 && follows < FOLLOWS {
+    let found = fitter.find(&mut solver);
+    let follows = fitter.follows(&found);
+    if fitter.levels.len() > 1 && fitter.span() > 1.3 && follows < FOLLOWS {
         return Err(wrong((
             format!("what the frames read does not go with the forces (correlation {follows:.2})"),
             "check that each line of the forces belongs to the frame of the same number".to_owned(),
         )));
     }
-    let told = work.told(&found);
-    let fitted = work.fitted(&found);
-    let left_out = work.folds.is_some().then(|| work.validate(found.kind, found.prior));
-    let plain = work.folds.is_some().then(|| work.validate(work.kinds()[0], None));
-    let stresses: Vec<Vec<f64>> = work.holds.all.iter().map(|hold| work.stress(&found, &hold.x)).collect();
+    let told = fitter.told(&found);
+    let fitted = fitter.fitted(&found);
+    let left_out = fitter.folds.is_some().then(|| fitter.validate(found.kind, found.prior));
+    let plain = fitter.folds.is_some().then(|| fitter.validate(fitter.kinds()[0], None));
+    let stresses: Vec<Vec<f64>> = fitter.holds.all.iter().map(|hold| fitter.stress(&found, &hold.x)).collect();
     let largest = stresses.iter().map(magnitude).fold(0.0, f64::max);
-    let gains: Vec<f64> = found.delta.iter().zip(&work.before).map(|(delta, before)| before * (1.0 + delta)).collect();
-    let pressed = stresses.iter().zip(&work.loads).filter(|(_, load)| **load >= HEAVY * work.range()[1]);
+    let gains: Vec<f64> =
+        found.delta.iter().zip(&fitter.before).map(|(delta, before)| before * (1.0 + delta)).collect();
+    let pressed = stresses.iter().zip(&fitter.loads).filter(|(_, load)| **load >= HEAVY * fitter.range()[1]);
     let range = [pressed.map(|(stress, _)| magnitude(stress)).fold(f64::INFINITY, f64::min), largest];
-    let mut calibrated = work.readings.calibrated(design, &found.shape, &gains, range, &mut remarks);
-    remarks.extend(work.readings.far_from(design, &calibrated));
-    let friction = friction::fit(&mut calibrated, &work.holds.all, &stresses, work.folds.as_ref())?;
-    remarks.extend(verify(&calibrated, frames, &work, &fitted)?);
+    let mut calibrated = fitter.readings.calibrated(design, &found.shape, &gains, range, &mut remarks);
+    remarks.extend(fitter.readings.far_from(design, &calibrated));
+    let friction = friction::fit(&mut calibrated, &fitter.holds.all, &stresses, fitter.folds.as_ref())?;
+    remarks.extend(verify(&calibrated, frames, &fitter, &fitted)?);
     let validated = left_out.as_ref().unwrap_or(&fitted);
-    let shown = work.holds.all.iter().zip(&validated.errors).map(|(hold, error)| Hold {
+    let shown = fitter.holds.all.iter().zip(&validated.errors).map(|(hold, error)| Hold {
         frames: [hold.frames.start, hold.frames.end - 1],
         place: hold.place,
         measured_n: hold.load,
@@ -90,16 +91,16 @@ pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> 
         errors: left_out.as_ref().map(|left| Errors::of(left.errors.iter().copied())),
         errors_as_designed: plain.as_ref().map(|plain| Errors::of(plain.errors.iter().copied())),
         errors_fitted: Some(Errors::of(fitted.errors.iter().copied())),
-        points: work.readings.points(&calibrated.input),
-        contacts: work.holds.contacts,
-        places: work.holds.places,
-        loads: work.range(),
+        points: fitter.readings.points(&calibrated.input),
+        contacts: fitter.holds.contacts,
+        places: fitter.holds.places,
+        loads: fitter.range(),
         determined: Vec::new(),
         undetermined: Vec::new(),
         remarks,
         design: calibrated,
     };
-    report::say(&mut recorded, &work, &found, friction);
+    report::say(&mut recorded, &fitter, &found, friction);
     Ok(recorded)
 }
 
@@ -108,7 +109,7 @@ pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> 
 fn verify(
     design: &Design,
     frames: &[Vec<f64>],
-    work: &Work<'_>,
+    fitter: &Fitter<'_>,
     fitted: &Validated,
 ) -> Result<Option<String>, RecordedError> {
     let wrong = |problem| {
@@ -117,15 +118,16 @@ fn verify(
         RecordedError::of(design, (problem, remedy.to_owned()))
     };
     let solver = Solver::new(design)?;
-    let [_, largest] = work.range();
+    let [_, largest] = fitter.range();
     let step = frames.len().div_ceil(SOLVED);
     let (mut errors, mut fits, mut counts) = (Vec::new(), Vec::new(), [0; 2]);
-    for (index, hold) in work.holds.all.iter().enumerate().filter(|(_, hold)| hold.load >= HEAVY * largest) {
+    for (index, hold) in fitter.holds.all.iter().enumerate().filter(|(_, hold)| hold.load >= HEAVY * largest) {
         for frame in hold.frames.clone().step_by(step) {
             counts[0] += 1;
             counts[1] += usize::from(solver.solve(&frames[frame])?.status.contains(Status::NO_CONTACT));
         }
-        let mean: Vec<f64> = hold.x.iter().zip(&work.holds.rest).map(|(x, rest)| work.holds.sign * x + rest).collect();
+        let mean: Vec<f64> =
+            hold.x.iter().zip(&fitter.holds.rest).map(|(x, rest)| fitter.holds.sign * x + rest).collect();
         errors.push((solver.solve(&mean)?.resultant[2].abs() / hold.load - 1.0).abs());
         fits.push(fitted.errors[index].abs());
     }

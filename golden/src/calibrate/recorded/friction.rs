@@ -117,7 +117,7 @@ pub(super) fn fit(
 }
 
 /// A hold as the estimator sees it.
-struct Seen {
+struct DraggedHold {
     hold: usize,
     sample: Sample,
     /// Friction components that make its tangential force right.
@@ -126,7 +126,7 @@ struct Seen {
     added: [f64; 2],
 }
 
-impl Seen {
+impl DraggedHold {
     /// What is left for the constants to say.
     fn wanted(&self) -> [f64; 2] {
         [self.target[0] - self.added[0], self.target[1] - self.added[1]]
@@ -143,7 +143,7 @@ fn samples(
     holds: &[Hold],
     stresses: &[Vec<f64>],
     dragged: &[usize],
-) -> Result<Vec<Seen>, CalibrateError> {
+) -> Result<Vec<DraggedHold>, CalibrateError> {
     let constants = &design.algorithm.joint;
     let plain = Design { input: design.input.of_pascals(), ..design.clone() };
     let half_window = constants
@@ -163,7 +163,7 @@ fn samples(
         let force = [x, y, -holds[hold].load];
         if let Some(sample) = observer.sample(frame, force, 0.0, &mut random)? {
             let added = bare.corrected(sample.mu, &sample.features, &mut scratch);
-            seen.push(Seen { hold, target: target(&sample, constants.gain), added, sample });
+            seen.push(DraggedHold { hold, target: target(&sample, constants.gain), added, sample });
         }
     }
     Ok(seen)

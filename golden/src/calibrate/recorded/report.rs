@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::fit::{Found, Work};
+use super::fit::{Constants, Fitter};
 use super::folds::Folds;
 use super::friction::Verdict;
 use super::shape::Shape;
@@ -121,18 +121,18 @@ impl Errors {
 }
 
 /// Puts everything into words.
-pub(super) fn say(recorded: &mut Recorded, work: &Work<'_>, found: &Found, friction: Verdict) {
-    force(recorded, work, found);
-    curve(recorded, work, found);
-    gains(recorded, work, found);
+pub(super) fn say(recorded: &mut Recorded, fitter: &Fitter<'_>, found: &Constants, friction: Verdict) {
+    force(recorded, fitter, found);
+    curve(recorded, fitter, found);
+    gains(recorded, fitter, found);
     friction.map_or_else(|words| recorded.undetermined.push(words), |words| recorded.determined.push(words));
-    spread(recorded, work);
+    spread(recorded, fitter);
 }
 
-fn force(recorded: &mut Recorded, work: &Work<'_>, found: &Found) {
-    if let (Some(errors), Some(folds)) = (&recorded.errors, &work.folds) {
+fn force(recorded: &mut Recorded, fitter: &Fitter<'_>, found: &Constants) {
+    if let (Some(errors), Some(folds)) = (&recorded.errors, &fitter.folds) {
         let before = recorded.errors_as_designed.as_ref().map_or(0.0, |errors| errors.median);
-        let plain = work.kinds()[0];
+        let plain = fitter.kinds()[0];
         let better = if found.kind == plain && found.prior.is_none() {
             String::new()
         } else {
@@ -148,7 +148,7 @@ fn force(recorded: &mut Recorded, work: &Work<'_>, found: &Found) {
                 .to_owned(),
         );
     }
-    if recorded.places < 4 && work.folds.is_some() {
+    if recorded.places < 4 && fitter.folds.is_some() {
         recorded.undetermined.push(format!(
             "other places: all contacts are at {}; taxels elsewhere were not measured",
             if recorded.places == 1 { "one place".to_owned() } else { format!("{} places", recorded.places) }
@@ -156,19 +156,19 @@ fn force(recorded: &mut Recorded, work: &Work<'_>, found: &Found) {
     }
 }
 
-fn curve(recorded: &mut Recorded, work: &Work<'_>, found: &Found) {
+fn curve(recorded: &mut Recorded, fitter: &Fitter<'_>, found: &Constants) {
     let loads = {
         let [low, high] = recorded.loads;
-        if work.levels.len() == 1 {
+        if fitter.levels.len() == 1 {
             format!("one load ({} N)", short(low))
         } else {
-            format!("{} loads from {} to {} N", work.levels.len(), short(low), short(high))
+            format!("{} loads from {} to {} N", fitter.levels.len(), short(low), short(high))
         }
     };
-    let top = work.largest();
-    if work.kinds().len() == 1 {
-        let why = if work.folds.is_none() { "nothing could check it" } else { "they are too close to each other" };
-        let why = if work.levels.len() == 1 { "a curve takes at least two, better five" } else { why };
+    let top = fitter.largest();
+    if fitter.kinds().len() == 1 {
+        let why = if fitter.folds.is_none() { "nothing could check it" } else { "they are too close to each other" };
+        let why = if fitter.levels.len() == 1 { "a curve takes at least two, better five" } else { why };
         recorded.undetermined.push(format!(
             "curve: {loads}: {why}; it stays {}. Record loads of which the largest is five times the smallest",
             found.kind.name()
@@ -184,7 +184,7 @@ fn curve(recorded: &mut Recorded, work: &Work<'_>, found: &Found) {
         }
         Shape::Power { power, scale, .. } => {
             // Before a gain of their own, and but for noise.
-            let count = match (work.readings.sign * work.readings.base).round() {
+            let count = match (fitter.readings.sign * fitter.readings.base).round() {
                 0.0 => "count".to_owned(),
                 rest => format!("|count - {rest}|"),
             };
@@ -205,10 +205,11 @@ fn curve(recorded: &mut Recorded, work: &Work<'_>, found: &Found) {
              \"saturated\". Record heavier loads if there are any"
         )),
     }
-    if work.span() < 3.0 {
-        recorded
-            .remarks
-            .push(format!("the largest load is {:.1} times the smallest: the curve is known there only", work.span()));
+    if fitter.span() < 3.0 {
+        recorded.remarks.push(format!(
+            "the largest load is {:.1} times the smallest: the curve is known there only",
+            fitter.span()
+        ));
     }
 }
 
@@ -217,7 +218,7 @@ fn short(value: f64) -> String {
     format!("{value:.3}").trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-fn gains(recorded: &mut Recorded, work: &Work<'_>, found: &Found) {
+fn gains(recorded: &mut Recorded, fitter: &Fitter<'_>, found: &Constants) {
     let count = recorded.gains.len();
     let untouched: Vec<usize> = (0..count).filter(|&taxel| !recorded.gains[taxel].touched).collect();
     let told = recorded.gains.iter().filter(|gain| gain.told).count();
@@ -226,7 +227,7 @@ fn gains(recorded: &mut Recorded, work: &Work<'_>, found: &Found) {
         format!("{}{}", shown.join(", "), if taxels.len() > 12 { ", …" } else { "" })
     };
     let Some(prior) = found.prior else {
-        let why = if work.tells_gains() {
+        let why = if fitter.tells_gains() {
             "taxels' own gains do not reduce the error at other places".to_owned()
         } else {
             format!("contacts at {} do not determine single taxels", counted(recorded.places, "place"))
@@ -241,7 +242,7 @@ fn gains(recorded: &mut Recorded, work: &Work<'_>, found: &Found) {
     } else {
         "each for itself".to_owned()
     };
-    let [differ, apart] = work.halves(found, prior);
+    let [differ, apart] = fitter.halves(found, prior);
     let trend = if apart > 0.7 * differ { ": a trend rather than each taxel's own gain" } else { "" };
     recorded.determined.push(format!(
         "gains: {told} of {count} taxels, {smooth}; they differ by {:.1} %, gains from the two halves of the recording by \
@@ -263,8 +264,8 @@ fn gains(recorded: &mut Recorded, work: &Work<'_>, found: &Found) {
 }
 
 /// How well the sensor repeats, and how it creeps.
-fn spread(recorded: &mut Recorded, work: &Work<'_>) {
-    let holds = &work.holds.all;
+fn spread(recorded: &mut Recorded, fitter: &Fitter<'_>) {
+    let holds = &fitter.holds.all;
     let creeps: Vec<f64> = holds.iter().filter_map(|hold| hold.creep).collect();
     let creep = middle(&creeps);
     if creep.abs() > 0.03 {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use golden::contacts::{Finder, Found};
+use golden::contacts::{Finder, Regions};
 use golden::parity::Orbits;
 use golden::sensor::Sensor;
 use hdl_gen::model::contacts::count;
@@ -125,7 +125,7 @@ fn components_are_counted_as_the_model_counts_them() {
     for (case, found) in cases.iter().zip(found) {
         let Sensor { columns, .. } = case.sensor;
         let finder = Finder::new(&case.sensor, 1);
-        let mut solver = Found::default();
+        let mut solver = Regions::default();
         assert_eq!(found.len(), case.frames.len(), "{}: counts", case.name);
         let mut most = 0;
         for (number, (frame, found)) in case.frames.iter().zip(found).enumerate() {
