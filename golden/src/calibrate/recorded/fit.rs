@@ -5,7 +5,7 @@ use super::gains::{NOISES, Prior, RANGES, Shares};
 use super::holds::Holds;
 use super::readings::Readings;
 use super::rows::Rows;
-use super::shape::{self, Kind, Own, Shape, Terms};
+use super::shape::{self, Kind, Shape, Terms};
 use crate::design::Design;
 use crate::numbers::{correlation, middle};
 
@@ -38,10 +38,8 @@ pub(super) struct Fitter<'a> {
     pub(super) folds: Option<Folds>,
     trust: Vec<f64>,
     pub(super) readings: Readings,
-    knots: Vec<f64>,
     /// Gains that the design has already.
     pub(super) before: Vec<f64>,
-    own: Box<Own>,
     /// For each hold: newtons for a pascal of each taxel, as the last stress has them.
     rows: Vec<Vec<f64>>,
 }
@@ -88,12 +86,9 @@ impl<'a> Fitter<'a> {
         let trust =
             holds.all.iter().map(|hold| 1.0 / (of_contact(hold.contact).sqrt() * hold.load.max(LIGHT * largest)));
         let trust = trust.collect();
-        let readings = Readings::new(holds);
-        let x: Vec<&[f64]> = holds.all.iter().map(|hold| hold.x.as_slice()).collect();
-        let knots = shape::knots(&x, holds.noise.unwrap_or(0.0));
-        let own = readings.own(&design.input);
+        let readings = Readings::new(holds, &design.input);
         let (levels, folds) = (levels(loads.iter().copied()), Folds::new(&holds.all));
-        (Self { design, holds, loads, levels, folds, trust, readings, knots, before, own, rows }, lost)
+        (Self { design, holds, loads, levels, folds, trust, readings, before, rows }, lost)
     }
 
     /// Smallest and largest load.
@@ -118,15 +113,13 @@ impl<'a> Fitter<'a> {
     }
 
     fn terms<'b>(&'b self, weights: &'b [Vec<f64>], x: &'b [&'b [f64]]) -> Terms<'b> {
-        let Self { loads, trust, readings, own, knots, .. } = self;
-        Terms { weights, x, loads, trust, rest: &readings.rest, base: readings.base, own: &**own, knots }
+        Terms { weights, x, loads: &self.loads, trust: &self.trust, counts: &self.readings.counts }
     }
 
     /// Stress that presses in pascals, of readings above rest.
     pub(super) fn stress(&self, found: &Constants, x: &[f64]) -> Vec<f64> {
-        let terms = self.terms(&[], &[]);
         let gain = |taxel: usize| self.before[taxel] * (1.0 + found.delta[taxel]);
-        x.iter().enumerate().map(|(taxel, &x)| gain(taxel) * found.shape.at(taxel, x, &terms)).collect()
+        x.iter().enumerate().map(|(taxel, &x)| gain(taxel) * found.shape.at(taxel, x, &self.readings.counts)).collect()
     }
 
     /// What the stress weighs, for a curve and gains.
@@ -149,13 +142,12 @@ impl<'a> Fitter<'a> {
     /// Relative errors of the loads of some holds.
     fn errors(&self, shape: &Shape, weights: &[Vec<f64>], holds: &[usize]) -> Vec<(usize, f64)> {
         let x = self.x();
-        let terms = self.terms(weights, &x);
         let load = |h: usize| -> f64 {
             weights[h]
                 .iter()
                 .zip(x[h])
                 .enumerate()
-                .map(|(taxel, (weight, &x))| weight * shape.at(taxel, x, &terms))
+                .map(|(taxel, (weight, &x))| weight * shape.at(taxel, x, &self.readings.counts))
                 .sum()
         };
         holds.iter().map(|&h| (h, load(h) / self.loads[h] - 1.0)).collect()
@@ -216,11 +208,10 @@ impl<'a> Fitter<'a> {
 
     /// The taxels' shares in the loads without deviations of their gains.
     fn shares(&self, shape: &Shape) -> Shares {
-        let x = self.x();
-        let terms = self.terms(&[], &[]);
+        let (x, counts) = (self.x(), &self.readings.counts);
         let row = |h: usize| -> Vec<f64> {
             let share = |taxel: usize| {
-                self.rows[h][taxel] * self.before[taxel] * shape.at(taxel, x[h][taxel], &terms) / self.loads[h]
+                self.rows[h][taxel] * self.before[taxel] * shape.at(taxel, x[h][taxel], counts) / self.loads[h]
             };
             (0..self.before.len()).map(share).collect()
         };
@@ -279,11 +270,6 @@ impl<'a> Fitter<'a> {
             kinds.extend(SMOOTH.map(Kind::Pieces));
         }
         kinds
-    }
-
-    /// The largest reading above rest.
-    pub(super) fn largest(&self) -> f64 {
-        self.knots.last().copied().unwrap_or(1.0)
     }
 
     /// Whether contacts are at places enough to tell gains of taxels.

@@ -1,7 +1,7 @@
 //! From readings to the design: what a sensor reads unloaded, and the keys that say what its counts mean.
 
 use super::holds::Holds;
-use super::shape::{self, Own, Shape};
+use super::shape::{self, Counts, Shape};
 use crate::design::{Calibration, Curve, Design, Hardware, Input, NOISE_FLOOR_DIVISOR};
 use crate::numbers::middle;
 
@@ -20,36 +20,31 @@ const LAW_PIECES: i32 = 32;
 pub(super) struct Readings {
     /// 1 where pressing raises the readings, else -1.
     pub(super) sign: f64,
-    /// Unloaded readings times the sign, one a taxel.
-    pub(super) rest: Vec<f64>,
-    /// The middle one: curves begin there.
-    pub(super) base: f64,
+    pub(super) counts: Counts,
     noise: Option<f64>,
     /// Least and largest reading above rest.
     range: [f64; 2],
 }
 
 impl Readings {
-    pub(super) fn new(holds: &Holds) -> Self {
-        let rest: Vec<f64> = holds.rest.iter().map(|rest| holds.sign * rest).collect();
-        let base = middle(&rest);
-        let x = || holds.all.iter().flat_map(|hold| hold.x.iter().copied());
-        let range = [x().fold(0.0, f64::min), x().fold(0.0, f64::max)];
-        Self { sign: holds.sign, rest, base, noise: holds.noise, range }
-    }
-
-    /// What a design makes of readings above rest, in pascals that press, before the taxel's gain.
-    pub(super) fn own(&self, input: &Input) -> Box<Own> {
-        let (input, rest, sign) = (input.clone(), self.rest.clone(), self.sign);
-        Box::new(move |taxel, x| {
+    /// Of what the holds of a recording read, and with the curve that a design has.
+    pub(super) fn new(holds: &Holds, input: &Input) -> Self {
+        let Holds { sign, noise, .. } = *holds;
+        let rest: Vec<f64> = holds.rest.iter().map(|rest| sign * rest).collect();
+        let x: Vec<&[f64]> = holds.all.iter().map(|hold| hold.x.as_slice()).collect();
+        let range = [f64::min, f64::max].map(|pick| x.iter().copied().flatten().copied().fold(0.0, pick));
+        let (input, own_rest) = (input.clone(), rest.clone());
+        let own = move |taxel: usize, x: f64| {
             let pascals = |oriented: f64| plain(&input, sign * oriented);
-            pascals(rest[taxel]) - pascals(rest[taxel] + x)
-        })
+            pascals(own_rest[taxel]) - pascals(own_rest[taxel] + x)
+        };
+        let (base, knots) = (middle(&rest), shape::knots(&x, noise.unwrap_or(0.0)));
+        Self { sign, counts: Counts { rest, base, own: Box::new(own), knots }, noise, range }
     }
 
     /// Counts above rest and what they mean, of a taxel of gain 1.
     pub(super) fn points(&self, input: &Input) -> Vec<[f64; 2]> {
-        let at = |x: f64| plain(input, self.sign * self.base) - plain(input, self.sign * (self.base + x));
+        let at = |x: f64| plain(input, self.sign * self.counts.base) - plain(input, self.sign * (self.counts.base + x));
         (0..=60).map(|step| self.range[1] * f64::from(step) / 60.0).map(|x| [x, at(x)]).collect()
     }
 
@@ -108,7 +103,7 @@ impl Readings {
                 None => input.pa_per_count = Some(factor * design.input.pa_per_count.unwrap_or(1.0)),
             },
             &Shape::Power { power, scale, straight } => {
-                let tared = self.rest.iter().all(|rest| rest.abs() < TARED * self.range[1]);
+                let tared = self.counts.rest.iter().all(|rest| rest.abs() < TARED * self.range[1]);
                 // Below 1 a law is infinitely steep at zero load.
                 input.curve = Some(if tared && self.sign > 0.0 && power >= 1.0 {
                     Curve::power_law(power, -scale, &hardware)
@@ -130,7 +125,7 @@ impl Readings {
         }
         let offset: Vec<f64> = (0..gains.len())
             .map(|taxel| {
-                let rest = self.sign * self.rest[taxel];
+                let rest = self.sign * self.counts.rest[taxel];
                 gains[taxel] * if input.curve.is_some() { -plain(&input, rest) } else { -rest }
             })
             .collect();
@@ -145,7 +140,7 @@ impl Readings {
         }
         let floor = self.noise.map(|noise| {
             let of = |taxel: usize| {
-                let rest = self.sign * self.rest[taxel];
+                let rest = self.sign * self.counts.rest[taxel];
                 (input.to_pa(taxel, rest + self.sign * noise) - input.to_pa(taxel, rest)).abs()
             };
             QUIET * (0..gains.len()).map(of).sum::<f64>() / gains.len() as f64
@@ -173,13 +168,13 @@ impl Readings {
     /// A curve through points of readings above the base and pascals that press. A sensor that reads less than that, a
     /// pull or another rest, goes on below with the first slope.
     fn curve(&self, mut points: Vec<[f64; 2]>) -> Curve {
-        let lowest = self.rest.iter().map(|rest| rest - self.base).fold(self.range[0], f64::min);
+        let lowest = self.counts.rest.iter().map(|rest| rest - self.counts.base).fold(self.range[0], f64::min);
         if lowest < 0.0 {
             let [count, pascals] = points[1];
             points.insert(0, [1.5 * lowest, 1.5 * lowest * pascals / count]);
         }
         let mut points: Vec<[f64; 2]> =
-            points.iter().map(|[x, pascals]| [self.sign * (x + self.base), 0.0 - pascals]).collect();
+            points.iter().map(|[x, pascals]| [self.sign * (x + self.counts.base), 0.0 - pascals]).collect();
         if self.sign < 0.0 {
             points.reverse();
         }

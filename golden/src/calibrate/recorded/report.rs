@@ -165,7 +165,7 @@ fn curve(recorded: &mut Recorded, fitter: &Fitter<'_>, found: &Constants) {
             format!("{} loads from {} to {} N", fitter.levels.len(), short(low), short(high))
         }
     };
-    let top = fitter.largest();
+    let top = fitter.readings.counts.largest();
     if fitter.kinds().len() == 1 {
         let why = if fitter.folds.is_none() { "nothing could check it" } else { "they are too close to each other" };
         let why = if fitter.levels.len() == 1 { "a curve takes at least two, better five" } else { why };
@@ -184,7 +184,7 @@ fn curve(recorded: &mut Recorded, fitter: &Fitter<'_>, found: &Constants) {
         }
         Shape::Power { power, scale, .. } => {
             // Before a gain of their own, and but for noise.
-            let count = match (fitter.readings.sign * fitter.readings.base).round() {
+            let count = match (fitter.readings.sign * fitter.readings.counts.base).round() {
                 0.0 => "count".to_owned(),
                 rest => format!("|count - {rest}|"),
             };

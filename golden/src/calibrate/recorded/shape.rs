@@ -43,6 +43,30 @@ pub(super) enum Shape {
     Pieces { knots: Vec<f64>, slopes: Vec<f64> },
 }
 
+/// The counts of a sensor that curves are made for.
+pub(super) struct Counts {
+    /// Unloaded readings, with the sign that makes pressing positive: one curve serves taxels of several.
+    pub(super) rest: Vec<f64>,
+    /// The middle one: curves begin there.
+    pub(super) base: f64,
+    pub(super) own: Box<Own>,
+    /// Where pieces begin above the base, from 0 to the largest reading.
+    pub(super) knots: Vec<f64>,
+}
+
+impl Counts {
+    /// How much of a reading above rest lies in each piece.
+    fn parts(&self, knots: &[f64], taxel: usize, x: f64) -> impl Iterator<Item = f64> {
+        let from = self.rest[taxel] - self.base;
+        basis(knots, x + from).into_iter().zip(basis(knots, from)).map(|(to, from)| to - from)
+    }
+
+    /// The largest reading above the base.
+    pub(super) fn largest(&self) -> f64 {
+        self.knots.last().copied().unwrap_or(1.0)
+    }
+}
+
 /// What a curve is fitted to: weights of the taxels in the load, with their gains, and readings above rest.
 pub(super) struct Terms<'a> {
     /// For each hold: the weights.
@@ -52,35 +76,21 @@ pub(super) struct Terms<'a> {
     pub(super) loads: &'a [f64],
     /// What an error of a hold counts: the inverse of a load.
     pub(super) trust: &'a [f64],
-    /// Unloaded readings, with the sign that makes pressing positive: one curve serves taxels of several.
-    pub(super) rest: &'a [f64],
-    /// That of which the knots are counted from.
-    pub(super) base: f64,
-    pub(super) own: &'a Own,
-    /// From 0 to the largest reading.
-    pub(super) knots: &'a [f64],
-}
-
-impl Terms<'_> {
-    /// How much of a reading above rest lies in each piece.
-    fn parts(&self, knots: &[f64], taxel: usize, x: f64) -> impl Iterator<Item = f64> {
-        let from = self.rest[taxel] - self.base;
-        basis(knots, x + from).into_iter().zip(basis(knots, from)).map(|(to, from)| to - from)
-    }
+    pub(super) counts: &'a Counts,
 }
 
 impl Shape {
     /// Pascals of a taxel's reading above rest, before its gain.
-    pub(super) fn at(&self, taxel: usize, x: f64, terms: &Terms<'_>) -> f64 {
+    pub(super) fn at(&self, taxel: usize, x: f64, counts: &Counts) -> f64 {
         match self {
-            Self::Own(factor) => factor * (terms.own)(taxel, x),
+            Self::Own(factor) => factor * (counts.own)(taxel, x),
             Self::Line(slope) => slope * x,
             Self::Power { power, scale, straight } => {
-                let from = terms.rest[taxel] - terms.base;
+                let from = counts.rest[taxel] - counts.base;
                 scale * (powered(x + from, *power, *straight) - powered(from, *power, *straight))
             }
             Self::Pieces { knots, slopes } => {
-                terms.parts(knots, taxel, x).zip(slopes).map(|(part, slope)| part * slope).sum()
+                counts.parts(knots, taxel, x).zip(slopes).map(|(part, slope)| part * slope).sum()
             }
         }
     }
@@ -142,14 +152,14 @@ pub(super) fn fit(kind: Kind, terms: &Terms<'_>, holds: &[usize]) -> Shape {
         if square > 0.0 { (found / square, all - found * found / square) } else { (0.0, all) }
     };
     match kind {
-        Kind::Own => Shape::Own(factor(&|taxel, x| (terms.own)(taxel, x)).0),
+        Kind::Own => Shape::Own(factor(&terms.counts.own).0),
         Kind::Line => Shape::Line(factor(&|_, x| x).0),
         Kind::Power => {
             // In the largest reading, so that no power overflows.
-            let largest = terms.knots.last().copied().unwrap_or(1.0);
+            let largest = terms.counts.largest();
             let law = |power: f64| {
                 factor(&|taxel, x| {
-                    let from = (terms.rest[taxel] - terms.base) / largest;
+                    let from = (terms.counts.rest[taxel] - terms.counts.base) / largest;
                     powered(x / largest + from, power, STRAIGHT) - powered(from, power, STRAIGHT)
                 })
             };
@@ -162,13 +172,14 @@ pub(super) fn fit(kind: Kind, terms: &Terms<'_>, holds: &[usize]) -> Shape {
 }
 
 fn pieces(terms: &Terms<'_>, holds: &[usize], smooth: f64) -> Shape {
-    let count = terms.knots.len() - 1;
+    let knots = &terms.counts.knots;
+    let count = knots.len() - 1;
     let (mut normal, mut right) = (DMatrix::zeros(count, count), DVector::zeros(count));
     let mut mean = [0.0; 2];
     for &h in holds {
         let mut z = DVector::zeros(count);
         for (taxel, (weight, &x)) in terms.weights[h].iter().zip(terms.x[h]).enumerate() {
-            for (sum, part) in z.iter_mut().zip(terms.parts(terms.knots, taxel, x)) {
+            for (sum, part) in z.iter_mut().zip(terms.counts.parts(knots, taxel, x)) {
                 *sum += weight * part;
             }
         }
@@ -189,7 +200,7 @@ fn pieces(terms: &Terms<'_>, holds: &[usize], smooth: f64) -> Shape {
         normal[(piece, piece - 1)] -= strength;
     }
     let slopes = non_negative(&normal, &right, slope.max(0.0), FLATTEST * slope.max(0.0));
-    Shape::Pieces { knots: terms.knots.to_vec(), slopes }
+    Shape::Pieces { knots: knots.clone(), slopes }
 }
 
 /// Least squares with no unknown below a bound, by coordinate descent on the normal equations, from `start`.

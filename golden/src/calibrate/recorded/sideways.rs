@@ -104,7 +104,7 @@ pub(super) fn fit(
         // None was measured.
         holds: Vec::new(),
         gains: (0..taxels).map(|taxel| TaxelGain { gain: gain(taxel), touched: false, told: false }).collect(),
-        points: Readings::new(&holds).points(&design.input),
+        points: Readings::new(&holds, &design.input).points(&design.input),
         design: calibrated,
     })
 }

@@ -99,8 +99,7 @@ pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
     let range = [peaks.iter().copied().fold(f64::INFINITY, f64::min), magnitude(&peaks)];
     let calibrated = work.readings.calibrated(&design, &shape, &gains, range, &mut remarks);
     let mean = |holds: &Step| {
-        let terms = work.terms(&[], &[], &[]);
-        let of = |taxel: usize| gains[taxel] * shape.at(taxel, holds.x[taxel], &terms);
+        let of = |taxel: usize| gains[taxel] * shape.at(taxel, holds.x[taxel], &work.readings.counts);
         work.living().map(of).sum::<f64>() / work.living().count() as f64
     };
     let shown = parted.all.iter().map(|hold| Hold {
@@ -135,20 +134,15 @@ pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
 struct Uniform<'a> {
     holds: &'a Holds,
     readings: Readings,
-    own: Box<shape::Own>,
-    knots: Vec<f64>,
     trust: Vec<f64>,
     alive: Vec<bool>,
 }
 
 impl<'a> Uniform<'a> {
     fn new(design: &Design, holds: &'a Holds) -> Self {
-        let readings = Readings::new(holds);
-        let own = readings.own(&design.input);
-        let x: Vec<&[f64]> = holds.all.iter().map(|hold| hold.x.as_slice()).collect();
-        let knots = shape::knots(&x, holds.noise.unwrap_or(0.0));
+        let readings = Readings::new(holds, &design.input);
         let trust = holds.all.iter().map(|hold| 1.0 / hold.load).collect();
-        Self { holds, readings, own, knots, trust, alive: vec![true; design.sensor.taxels()] }
+        Self { holds, readings, trust, alive: vec![true; design.sensor.taxels()] }
     }
 
     fn living(&self) -> impl Iterator<Item = usize> {
@@ -165,8 +159,7 @@ impl<'a> Uniform<'a> {
     }
 
     fn terms<'b>(&'b self, weights: &'b [Vec<f64>], x: &'b [&'b [f64]], loads: &'b [f64]) -> Terms<'b> {
-        let Self { readings, own, knots, trust, .. } = self;
-        Terms { weights, x, loads, trust, rest: &readings.rest, base: readings.base, own: &**own, knots }
+        Terms { weights, x, loads, trust: &self.trust, counts: &self.readings.counts }
     }
 
     /// Curve and gains, of mean 1, from some of the pressures.
@@ -186,7 +179,7 @@ impl<'a> Uniform<'a> {
             for taxel in self.living() {
                 let (mut reads, mut squares) = (0.0, 0.0);
                 for &hold in holds {
-                    let z = shape.at(taxel, x[hold][taxel], &terms) / loads[hold];
+                    let z = shape.at(taxel, x[hold][taxel], terms.counts) / loads[hold];
                     (reads, squares) = (reads + z, squares + z * z);
                 }
                 gains[taxel] = if squares > 0.0 { (reads / squares).clamp(1e-2, 16.0) } else { 1.0 };
@@ -200,10 +193,9 @@ impl<'a> Uniform<'a> {
 
     /// Relative errors of every taxel's pressure.
     fn errors(&self, shape: &Shape, gains: &[f64], holds: &[usize]) -> Vec<f64> {
-        let terms = self.terms(&[], &[], &[]);
         let of = |&hold: &usize| {
             let Step { x, load, .. } = &self.holds.all[hold];
-            let error = |taxel: usize| gains[taxel] * shape.at(taxel, x[taxel], &terms) / load - 1.0;
+            let error = |taxel: usize| gains[taxel] * shape.at(taxel, x[taxel], &self.readings.counts) / load - 1.0;
             self.living().map(error).collect::<Vec<_>>()
         };
         holds.iter().flat_map(of).collect()
@@ -220,9 +212,9 @@ impl<'a> Uniform<'a> {
 
     /// The largest stress of each hold.
     fn peaks(&self, shape: &Shape, gains: &[f64]) -> Vec<f64> {
-        let terms = self.terms(&[], &[], &[]);
         let peak = |hold: &Step| {
-            let stress = self.living().map(|taxel| gains[taxel] * shape.at(taxel, hold.x[taxel], &terms));
+            let stress =
+                self.living().map(|taxel| gains[taxel] * shape.at(taxel, hold.x[taxel], &self.readings.counts));
             stress.fold(0.0, f64::max)
         };
         self.holds.all.iter().map(peak).collect()
