@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use golden::calibrate::recorded::{Measured, fit_forces, fit_uniform, page, read_forces, read_pressures};
+use golden::calibrate::recorded::{Measured, fit_forces, fit_uniform, read_forces, read_pressures};
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
+use testbench::calibration_page::page;
 
 use crate::arrays::{Frames, unmasked};
 use crate::design::{Design, named_anew};

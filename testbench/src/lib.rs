@@ -3,6 +3,7 @@
 
 pub mod accuracy;
 pub mod banks;
+pub mod calibration_page;
 pub mod co_simulation;
 pub mod compare;
 pub mod dut;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use golden::calibrate::recorded::{
-    Measured, Recorded, RecordedError, fit_forces, fit_uniform, page, read_forces, read_pressures,
+    Measured, Recorded, RecordedError, fit_forces, fit_uniform, read_forces, read_pressures,
 };
 use golden::check::check;
 use golden::creep::{self, Creep};
@@ -15,6 +15,7 @@ use golden::progress::Progress;
 use golden::resolved::{Resolved, folder, keep_apart};
 use golden::tune_filter::rebase_scenes;
 use serde::Serialize;
+use testbench::calibration_page::page;
 
 use super::recording::{LayoutArguments, Recording, warn};
 use crate::arguments::name_of;

@@ -14,7 +14,6 @@ mod gains;
 mod holds;
 mod lag;
 mod loads;
-mod page;
 mod readings;
 mod report;
 mod rows;
@@ -26,7 +25,6 @@ mod uniform;
 use std::path::PathBuf;
 
 pub use force::fit_forces;
-pub use page::page;
 pub use report::{Errors, Hold, Recorded, TaxelGain};
 pub use table::{Measured, read_forces, read_pressures};
 pub(crate) use table::{forces, table};

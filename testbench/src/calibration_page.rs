@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::report::Recorded;
-use crate::design::{Design, Sensor};
+use golden::calibrate::recorded::Recorded;
+use golden::design::{Design, Sensor};
 
 /// Sides of a plot in pixels, and its margins: room for a label of six digits on the left, for half of one on the right.
 const SIDES: [f64; 2] = [380.0, 300.0];
