@@ -22,21 +22,6 @@ pub trait Stored<const W: usize> {
     fn arm_m(&self, taxel: usize) -> [f64; 2];
 }
 
-impl<S: Stored<W>, const W: usize> Stored<W> for &S {
-    fn times<T: Float>(&self, source: Source, x: &[[T; W]], result: &mut [[T; W]], scratch: &mut Quarters<T>) {
-        (*self).times(source, x, result, scratch);
-    }
-
-    fn sums<T: Float>(&self, pull: &[[T; W]], weight: &[[T; W]]) -> ByPq<T> {
-        (*self).sums(pull, weight)
-    }
-
-    fn arm_m(&self, taxel: usize) -> [f64; 2] {
-        (*self).arm_m(taxel)
-    }
-}
-
-/// Two folded vectors.
 pub type Quarters<T> = [Vec<[T; COMPONENTS]>; 2];
 
 impl Stored<4> for ReducedMatrices {

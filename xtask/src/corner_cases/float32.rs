@@ -18,17 +18,17 @@ const STEPS: usize = 24;
 #[derive(Debug)]
 pub struct Single<'a> {
     design: &'a Design,
-    engine: Engine<f32, &'a ReducedMatrices, COMPONENTS>,
+    engine: Engine<f32, ReducedMatrices, COMPONENTS>,
 }
 
 impl<'a> Single<'a> {
     /// From the matrices of an f64 solver with the reduced plan; `None` for another plan or estimator.
-    pub fn new(design: &'a Design, solver: &'a Solver) -> Option<Self> {
+    pub fn new(design: &'a Design, solver: &Solver) -> Option<Self> {
         let line = design.algorithm.estimator == Estimator::Line;
         line.then_some(())?;
         let list = ProductList::paper().fewer_products(true).folded();
         let orbits = solver.matrices().orbits();
-        Some(Self { design, engine: Engine::new(list, solver.reduced()?, orbits.all(), orbits.taxels()) })
+        Some(Self { design, engine: Engine::new(list, solver.reduced()?.clone(), orbits.all(), orbits.taxels()) })
     }
 
     /// The answer to one frame in Pa.

@@ -163,19 +163,19 @@ fn of_contacts(case: &Case, frames: &[Vec<f64>]) -> Option<ContactErrors> {
 }
 
 /// The fields of the reduced plan in f64, with a friction that something else has found.
-struct Fields<'a> {
-    engine: Engine<f64, &'a ReducedMatrices, COMPONENTS>,
+struct Fields {
+    engine: Engine<f64, ReducedMatrices, COMPONENTS>,
     full_scale: f64,
     gain: f64,
 }
 
-impl<'a> Fields<'a> {
+impl Fields {
     /// From the matrices of a solver; `None` for another plan.
-    fn new(design: &Design, solver: &'a Solver) -> Option<Self> {
+    fn new(design: &Design, solver: &Solver) -> Option<Self> {
         let orbits = solver.matrices().orbits();
         let list = ProductList::paper().fewer_products(true).folded();
         Some(Self {
-            engine: Engine::new(list, solver.reduced()?, orbits.all(), orbits.taxels()),
+            engine: Engine::new(list, solver.reduced()?.clone(), orbits.all(), orbits.taxels()),
             full_scale: design.hardware.full_scale_in_frames(),
             gain: design.algorithm.gain(),
         })
