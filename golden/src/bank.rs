@@ -31,12 +31,10 @@ pub fn to_csv(design: &Design) -> Result<String, String> {
     }
     text.push('\n');
     for taxel in 0..taxels {
-        let of_taxel = |values: fn(&crate::design::Calibration) -> &Vec<f64>, absent: f64| {
-            input.calibration.as_ref().map_or(absent, |calibration| values(calibration)[taxel])
-        };
-        let gain = if input.dead.contains(&taxel) { 0.0 } else { of_taxel(|of| &of.gain, 1.0) };
+        let (gain, offset) = input.of_taxel(taxel);
+        let gain = if input.dead.contains(&taxel) { 0.0 } else { gain };
         let weights = dead.weights().iter().map(|weights| weights[taxel]);
-        push_row(&mut text, [gain, of_taxel(|of| &of.offset, 0.0)].into_iter().chain(weights));
+        push_row(&mut text, [gain, offset].into_iter().chain(weights));
     }
     if let Some(curve) = &input.curve {
         text += "count,pascals\n";

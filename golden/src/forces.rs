@@ -271,15 +271,10 @@ fn own_rows(path: &Path, table: &Table<'_>, frames: usize) -> Result<Vec<Vec<f64
         let found = cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
         let mut row = Vec::with_capacity(found);
         for (index, cell) in cells[..found].iter().enumerate() {
-            let column = index + 1;
-            let number = numbers.of(cell, table.separator, [line, column])?.filter(|number| number.is_finite());
-            row.push(number.ok_or_else(|| FrameError::Value {
-                path: path.to_path_buf(),
-                line,
-                column,
-                text: String::from_utf8_lossy(cell).chars().take(40).collect(),
-                remedy: "give a number in newtons or radians".to_owned(),
-            })?);
+            let place = [line, index + 1];
+            let number = numbers.of(cell, table.separator, place)?.filter(|number| number.is_finite());
+            let wrong = || FrameError::value(path, place, cell, "give a number in newtons or radians");
+            row.push(number.ok_or_else(wrong)?);
         }
         if found < NEEDED {
             let hint = "give a line of forces for each frame".to_owned();

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::design::{DesignError, Sensor, syntax_position};
+use crate::design::{DesignError, Sensor, syntax_position, text_of};
 
 /// Frames of another sensor than the design's.
 #[derive(Debug, thiserror::Error)]
@@ -28,10 +28,9 @@ pub fn beside(frames: &Path) -> PathBuf {
 
 /// The content of that file.
 pub fn to_toml(sensor: &Sensor) -> String {
-    let Sensor { columns, rows, pitch_mm: [x, y], depth_mm } = sensor;
     format!(
-        "# The sensor of the frames beside this file; who reads them compares it with the design.\n\
-         [sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [{x:?}, {y:?}]\ndepth_mm = {depth_mm:?}\n"
+        "# The sensor of the frames beside this file; who reads them compares it with the design.\n[sensor]\n{}",
+        toml::to_string(sensor).unwrap_or_default()
     )
 }
 
@@ -82,8 +81,7 @@ pub(crate) fn compare_beside(
     if !beside.is_file() {
         return Ok(());
     }
-    let text =
-        std::fs::read_to_string(beside).map_err(|source| DesignError::Read { path: beside.to_path_buf(), source })?;
+    let text = text_of(beside)?;
     let (path, beside) = (path.display(), beside.display());
     let found = parse(&text, &beside.to_string())?;
     if found == *design {
@@ -115,7 +113,9 @@ mod tests {
 
     #[test]
     fn what_is_written_reads_back() {
-        assert_eq!(parse(&to_toml(&sensor()), "x").expect("a sensor"), sensor());
+        let text = to_toml(&sensor());
+        assert!(text.ends_with("[sensor]\ncolumns = 10\nrows = 7\npitch_mm = [4.0, 2.1]\ndepth_mm = 3.3\n"), "{text}");
+        assert_eq!(parse(&text, "x").expect("a sensor"), sensor());
     }
 
     #[test]

@@ -301,7 +301,7 @@ impl AtRest {
                 if !self.works(each.taxel) {
                     return (0.0, 0.0);
                 }
-                let gain = design.input.calibration.as_ref().map_or(1.0, |before| before.gain[each.taxel]);
+                let (gain, _) = design.input.of_taxel(each.taxel);
                 let mean = match &design.input.curve {
                     // In pascals; that of the mean count is another.
                     Some(curve) => {

@@ -44,6 +44,11 @@ impl Sensor {
         [ix as f64 * self.pitch_mm[0] * 1e-3, iy as f64 * self.pitch_mm[1] * 1e-3]
     }
 
+    /// The grid's sides, from the first taxel to the last, in metres.
+    pub fn extent_m(&self) -> [f64; 2] {
+        self.position_m(self.taxels() - 1)
+    }
+
     /// The taxel whose cell, a pitch along each axis, holds a position in metres from the first taxel.
     pub fn taxel_at(&self, position_m: [f64; 2]) -> Option<usize> {
         let [x, y] = [0, 1].map(|axis| (position_m[axis] / (self.pitch_mm[axis] * 1e-3) + 0.5).floor());

@@ -17,13 +17,8 @@ const LARGEST_SHARE: f64 = 0.6;
 pub(super) fn radii(sensor: &Sensor) -> [f64; 2] {
     let pitch = 1e-3 * sensor.pitch_mm[0].max(sensor.pitch_mm[1]);
     let smallest = SMALLEST * pitch;
-    let short = extent(sensor).into_iter().fold(f64::INFINITY, f64::min);
+    let short = sensor.extent_m().into_iter().fold(f64::INFINITY, f64::min);
     [smallest, (LARGEST * pitch).min(LARGEST_SHARE * short).max(smallest)]
-}
-
-/// The grid's sides, in metres.
-pub(super) fn extent(sensor: &Sensor) -> [f64; 2] {
-    [(sensor.columns - 1) as f64 * sensor.pitch_mm[0] * 1e-3, (sensor.rows - 1) as f64 * sensor.pitch_mm[1] * 1e-3]
 }
 
 /// Half the window of the correction in taxels: it holds the largest contact and its margin of a depth.
@@ -46,7 +41,7 @@ pub(super) fn half_window(sensor: &Sensor) -> [usize; 2] {
 pub fn random_contacts(sensor: &Sensor, seed: u64, count: usize) -> Vec<Contact> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let [smallest, largest] = radii(sensor);
-    let sides = extent(sensor);
+    let sides = sensor.extent_m();
     (0..count)
         .map(|index| {
             let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();

@@ -5,7 +5,7 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
 use super::CalibrateError;
-use super::contacts::{extent, radii};
+use super::contacts::radii;
 use super::observer::{Observer, Sample};
 use crate::design::Sensor;
 use crate::scene::{COARSE, Contact, Field, Medium, Shape, Shear, Traction, normal};
@@ -77,7 +77,7 @@ impl UnitContact {
             0.4..0.55 => Shear::Sliding { spin: between(-SPIN, SPIN) },
             _ => Shear::Sliding { spin: 0.0 },
         };
-        let sides = extent(sensor);
+        let sides = sensor.extent_m();
         let centre_m = [0, 1].map(|axis| {
             let side = sides[axis];
             let margin = if anywhere < ANYWHERE { 0.0 } else { radius.min(0.4 * side) };

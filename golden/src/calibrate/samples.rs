@@ -1,7 +1,6 @@
 //! Frames with known forces, of either training set, and what they say of the gain.
 
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::Rng;
 
 use super::general::{self, UnitContact};
 use super::observer::{Observer, Sample};
@@ -9,7 +8,7 @@ use super::{CalibrateError, Settings, random_contacts};
 use crate::design::Tension;
 use crate::estimators::joint::TrainingSet;
 use crate::numbers::middle;
-use crate::scene::{Contact, Medium, Shape, unit_responses};
+use crate::scene::{Contact, Medium, Shape, stream, unit_responses};
 
 /// Poisson's ratio of the layers, from and to: rubber, give or take.
 const POISSON: [f64; 2] = [0.45, 0.49];
@@ -30,13 +29,6 @@ const RESHAPED: usize = 2;
 const PROFILES: [f64; 2] = [0.0, 2.0];
 /// The same where it may be nothing in the middle: three times the mean at the edge, where a punch's has no end.
 const HOLLOW: f64 = 3.0;
-
-/// A stream of random numbers of a seed.
-pub(super) fn stream(seed: u64, stream: u64) -> ChaCha8Rng {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    random.set_stream(stream);
-    random
-}
 
 /// Makes the frames of a training set and estimates them; frames without an answer are left out.
 pub(super) fn make(

@@ -3,12 +3,11 @@
 use rayon::prelude::*;
 
 use super::CalibrateError;
-use super::samples::stream;
 use crate::design::{Design, ExpectedError, Input, StandardError};
 use crate::estimators::standard_error::Marks;
 use crate::metrics::Quantiles;
 use crate::numbers::rounded;
-use crate::scene::{Kind, normal};
+use crate::scene::{Kind, normal, stream};
 use crate::smoothing::noise_left;
 use crate::solver::{Solver, Status};
 

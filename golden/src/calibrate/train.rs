@@ -1,7 +1,7 @@
 //! Training of the correction: gradient descent with momentum, on the mean over each sample's mirror images.
 
 use nalgebra::DMatrix;
-use rand::{Rng, SeedableRng};
+use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
 use super::diagonal::Diagonal;
@@ -11,7 +11,7 @@ use super::{Settings, diagonal};
 use crate::design::Sensor;
 use crate::estimators::joint::{self, Correction, LARGEST, TrainingSet, WEIGHT_FRACTION, WEIGHT_LIMIT};
 use crate::parity::{COMPONENTS, butterfly};
-use crate::scene::normal;
+use crate::scene::{normal, stream};
 
 /// Samples of a step.
 const BATCH: usize = 256;
@@ -63,9 +63,8 @@ pub(super) fn train(
         .collect();
     let basis = Basis::new(samples, half_window, diagonal::has_diagonal(sensor));
     let features = basis.features(samples);
-    let mut random = ChaCha8Rng::seed_from_u64(settings.seed);
     // Streams 0 and 1 of the seed made the samples.
-    random.set_stream(2);
+    let mut random = stream(settings.seed, 2);
     let mut learner = Learner::new(&basis, settings.hidden + settings.spare, &mut random);
     let mut batch = [0, 1, 2, 3].map(|component| DMatrix::zeros(basis.size(component), BATCH));
     let mut wanted = DMatrix::zeros(BATCH, 2);
@@ -285,6 +284,8 @@ pub(super) fn quantised(weights: &DMatrix<f64>) -> Vec<Vec<i32>> {
 
 #[cfg(test)]
 mod tests {
+    use rand::SeedableRng;
+
     use super::*;
     use crate::calibrate::observer::Observer;
     use crate::calibrate::samples;

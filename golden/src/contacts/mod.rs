@@ -56,7 +56,7 @@ impl ContactForces {
     /// Where a force and its torque about the middle of the grid at the surface say that it acts, in metres from the
     /// first taxel; the middle if nothing presses or pulls.
     pub fn centre_of(sensor: &Sensor, force: [f64; 3], torque: [f64; 3]) -> [f64; 2] {
-        let middle = sensor.position_m(sensor.taxels() - 1).map(|last| 0.5 * last);
+        let middle = sensor.extent_m().map(|last| 0.5 * last);
         let [_, _, normal] = force;
         if normal == 0.0 {
             return middle;

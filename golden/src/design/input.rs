@@ -164,7 +164,7 @@ impl Input {
     }
 
     /// Gain and offset of a taxel.
-    fn of_taxel(&self, taxel: usize) -> (f64, f64) {
+    pub(crate) fn of_taxel(&self, taxel: usize) -> (f64, f64) {
         self.calibration.as_ref().map_or((1.0, 0.0), |Calibration { gain, offset }| (gain[taxel], offset[taxel]))
     }
 

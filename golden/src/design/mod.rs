@@ -224,6 +224,6 @@ fn from_text(text: &str, origin: &str, beside: FileSource<'_>) -> Result<Design,
     resolve::design(read::keys(text, origin, beside)?, origin, beside)
 }
 
-fn text_of(path: &Path) -> Result<String, DesignError> {
+pub(crate) fn text_of(path: &Path) -> Result<String, DesignError> {
     std::fs::read_to_string(path).map_err(|source| DesignError::Read { path: path.to_path_buf(), source })
 }

@@ -287,8 +287,7 @@ impl Lines {
                 None => {
                     let text: String = String::from_utf8_lossy(field).chars().take(40).collect();
                     let remedy = hints::value(&self.target, &self.layout, &text);
-                    let [line, column] = place;
-                    return Err(FrameError::Value { path: self.cells.path.clone(), line, column, remedy, text });
+                    return Err(FrameError::value(&self.cells.path, place, field, remedy));
                 }
             }
         }
@@ -395,12 +394,11 @@ pub(super) fn read(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
             1 => lines.numbered(magnitude(&text.rows[0])),
             heads => lines.remark(&format!("a word where other lines have a number: {heads} lines taken for a header")),
         }
-        let kept = || is_head.iter().map(|is_head| !is_head);
-        let [mut of_rows, mut of_lines, mut of_times, mut of_labels] = [kept(), kept(), kept(), kept()];
-        text.rows.retain(|_| of_rows.next() == Some(true));
-        text.lines.retain(|_| of_lines.next() == Some(true));
-        text.times.retain(|_| of_times.next() == Some(true));
-        labels.retain(|_| of_labels.next() == Some(true));
+        let mut kept = is_head.iter().map(|is_head| !is_head).cycle();
+        text.rows.retain(|_| kept.next() == Some(true));
+        text.lines.retain(|_| kept.next() == Some(true));
+        text.times.retain(|_| kept.next() == Some(true));
+        labels.retain(|_| kept.next() == Some(true));
     }
     drop_summaries(&mut lines, &mut text, &labels);
     lines.end(&mut text)?;

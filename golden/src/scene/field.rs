@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::green::{PointLoad, gauss_legendre};
-use super::traction::{FINE, Points, loads};
+use super::traction::{FINE, Load, Points, loads};
 use super::{Contact, Medium, Scene};
 use crate::sensor::Sensor;
 
@@ -45,24 +45,39 @@ impl Field {
         Self { load: PointLoad::of(medium), depth_m, places, per_taxel: within.len(), points, sensor: sensor.clone() }
     }
 
+    /// Adds to sums of a taxel's stress what loads make of it; `of` makes the parts from the stress that one load's normal
+    /// and tangential force cause.
+    fn sum<const N: usize>(
+        &self,
+        taxel: usize,
+        centre_m: [f64; 2],
+        loads: &[Load],
+        mut sums: [f64; N],
+        of: impl Fn(f64, f64) -> [f64; N],
+    ) -> [f64; N] {
+        let scale = 1.0 / self.depth_m;
+        for ([x, y], weight) in &self.places[taxel * self.per_taxel..][..self.per_taxel] {
+            let (x, y) = (x - centre_m[0], y - centre_m[1]);
+            let mut values = [0.0; N];
+            for load in loads {
+                let [dx, dy] = [(x - load.place[0]) * scale, (y - load.place[1]) * scale];
+                let [normal, shear] = self.load.at(dx * dx + dy * dy);
+                let parts = of(load.force[0] * normal, (load.force[1] * dx + load.force[2] * dy) * shear);
+                values.iter_mut().zip(parts).for_each(|(value, part)| *value += part);
+            }
+            sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value * scale * scale);
+        }
+        sums
+    }
+
     /// Adds the stress of a contact, pushed in the direction `angle_deg`, to that of the taxels; returns the force that
     /// it exerts, `[F_x, F_y, F_z]`, and its torque about the middle of the grid.
     pub(crate) fn add(&self, contact: &Contact, angle_deg: f64, stress: &mut [f64]) -> [[f64; 3]; 2] {
         let Contact { shape, centre_m, normal_force_n, friction, traction, .. } = contact;
         let angle = angle_deg.to_radians();
         let loads = loads(*shape, traction, *normal_force_n, *friction, angle, self.points);
-        let scale = 1.0 / self.depth_m;
-        for (sum, places) in stress.iter_mut().zip(self.places.chunks(self.per_taxel)) {
-            for ([x, y], weight) in places {
-                let (x, y) = (x - centre_m[0], y - centre_m[1]);
-                let mut value = 0.0;
-                for load in &loads {
-                    let [dx, dy] = [(x - load.place[0]) * scale, (y - load.place[1]) * scale];
-                    let [normal, shear] = self.load.at(dx * dx + dy * dy);
-                    value += load.force[0] * normal + (load.force[1] * dx + load.force[2] * dy) * shear;
-                }
-                *sum += weight * value * scale * scale;
-            }
+        for (taxel, sum) in stress.iter_mut().enumerate() {
+            [*sum] = self.sum(taxel, *centre_m, &loads, [*sum], |normal, shear| [normal + shear]);
         }
         let mut exerted = [[0.0; 3]; 2];
         for load in &loads {
@@ -81,25 +96,10 @@ impl Field {
     pub(crate) fn parts(&self, contact: &Contact) -> ([Vec<f64>; 2], [f64; 2]) {
         let Contact { shape, centre_m, normal_force_n, traction, direction_deg, .. } = contact;
         let loads = loads(*shape, traction, *normal_force_n, 1.0, direction_deg.to_radians(), self.points);
-        let scale = 1.0 / self.depth_m;
-        let mut parts = [0, 1].map(|_| Vec::with_capacity(self.places.len() / self.per_taxel));
-        for places in self.places.chunks(self.per_taxel) {
-            let mut sums = [0.0; 2];
-            for ([x, y], weight) in places {
-                let (x, y) = (x - centre_m[0], y - centre_m[1]);
-                let mut values = [0.0; 2];
-                for load in &loads {
-                    let [dx, dy] = [(x - load.place[0]) * scale, (y - load.place[1]) * scale];
-                    let [normal, shear] = self.load.at(dx * dx + dy * dy);
-                    values[0] += load.force[0] * normal;
-                    values[1] += (load.force[1] * dx + load.force[2] * dy) * shear;
-                }
-                sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value * scale * scale);
-            }
-            parts.iter_mut().zip(sums).for_each(|(part, sum)| part.push(sum));
-        }
+        let of_taxel = |taxel| self.sum(taxel, *centre_m, &loads, [0.0; 2], |normal, shear| [normal, shear]).into();
+        let (normal, tangential) = (0..self.sensor.taxels()).map(of_taxel).unzip();
         let push = loads.iter().fold([0.0; 2], |[x, y], load| [x + load.force[1], y + load.force[2]]);
-        (parts, push)
+        ([normal, tangential], push)
     }
 }
 

@@ -117,7 +117,7 @@ impl Kind {
     pub fn scene(self, sensor: &Sensor, friction: f64, seed: u64) -> Scene {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
-        let last = sensor.position_m(sensor.taxels() - 1);
+        let last = sensor.extent_m();
         let pitch = 1e-3 * sensor.pitch_mm[0].max(sensor.pitch_mm[1]);
         let radius = between(1.25 * pitch, (2.5 * pitch).min(0.45 * last[0].min(last[1])));
         let margin = radius + sensor.depth_m() / 3.0;

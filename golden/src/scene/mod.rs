@@ -23,14 +23,14 @@ use std::path::Path;
 pub use bound::bound;
 pub use choice::ChoiceError;
 pub use kind::Kind;
-pub use sensor_errors::normal;
-pub use sensor_errors::{Converter, SensorErrors};
+pub(crate) use sensor_errors::stream;
+pub use sensor_errors::{Converter, SensorErrors, normal};
 pub use shape::Shape;
 pub use traction::{Shear, Traction};
 pub use transfer::Medium;
 
 use crate::contacts::ContactForces;
-use crate::design::{DesignError, Sensor};
+use crate::design::{DesignError, Sensor, text_of};
 pub(crate) use field::Field;
 use spectral::{Resolution, UnitResponses};
 pub(crate) use traction::COARSE;
@@ -115,9 +115,7 @@ impl Scene {
     ///
     /// [`SceneError::File`], with file and key.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| DesignError::Read { path: path.to_path_buf(), source })?;
-        Self::from_toml(&text, &path.display().to_string())
+        Self::from_toml(&text_of(path)?, &path.display().to_string())
     }
 
     /// Checks the text of a scene file; `origin` is the name to use in messages.

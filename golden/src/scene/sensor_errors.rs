@@ -55,22 +55,17 @@ impl SensorErrors {
     /// Applies the errors to frame number `frame`, in place.
     pub(super) fn apply(&self, frame: usize, stress: &mut [f64]) {
         // A stream for the gains and one for each frame: a frame does not depend on how many there are before it.
-        let generator = |stream: u64| {
-            let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
-            generator.set_stream(stream);
-            generator
-        };
         for value in &mut *stress {
             *value = self.tension.of(*value);
         }
         if self.gain_spread > 0.0 {
-            let mut gains = generator(0);
+            let mut gains = stream(self.seed, 0);
             for value in &mut *stress {
                 *value *= 1.0 + self.gain_spread * normal(&mut gains);
             }
         }
         if self.noise > 0.0 {
-            let mut noise = generator(1 + frame as u64);
+            let mut noise = stream(self.seed, 1 + frame as u64);
             let deviation = self.noise * magnitude(&*stress);
             for value in &mut *stress {
                 *value += deviation * normal(&mut noise);
@@ -91,6 +86,13 @@ impl SensorErrors {
             }
         }
     }
+}
+
+/// A stream of random numbers of a seed.
+pub(crate) fn stream(seed: u64, stream: u64) -> ChaCha8Rng {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(stream);
+    random
 }
 
 /// A normally distributed number with mean 0 and deviation 1 (Box and Muller).

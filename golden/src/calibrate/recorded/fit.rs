@@ -65,7 +65,7 @@ impl<'a> Fitter<'a> {
     /// Of holds that the solver can answer; the number of those that it cannot.
     pub(super) fn new(design: &'a Design, holds: &'a mut Holds, solver: &mut Rows) -> (Self, usize) {
         let before = (0..design.sensor.taxels()).map(|taxel| {
-            let gain = design.input.calibration.as_ref().map_or(1.0, |calibration| calibration.gain[taxel]);
+            let (gain, _) = design.input.of_taxel(taxel);
             if gain == 0.0 { 1.0 } else { gain }
         });
         let before: Vec<f64> = before.collect();

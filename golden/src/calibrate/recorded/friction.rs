@@ -3,10 +3,11 @@
 use super::folds::Folds;
 use super::holds::Hold;
 use crate::calibrate::observer::{Observer, Sample};
-use crate::calibrate::samples::{stream, target};
+use crate::calibrate::samples::target;
 use crate::calibrate::{CalibrateError, contacts, fit_friction_correction};
 use crate::design::{Design, Estimator};
 use crate::estimators::joint::{CUBIC_LIMIT, Joint, JointConstants, NetworkScratch, scaled};
+use crate::scene::stream;
 
 use super::RecordedError;
 

@@ -90,7 +90,7 @@ pub(super) fn fit(
     let mut determined = Vec::new();
     verdict.map_or_else(|words| undetermined.push(words), |words| determined.push(words));
     let steps = levels(holds.all.iter().map(|hold| hold.load));
-    let gain = |taxel: usize| design.input.calibration.as_ref().map_or(1.0, |calibration| calibration.gain[taxel]);
+    let gain = |taxel: usize| design.input.of_taxel(taxel).0;
     Ok(Recorded {
         contacts: holds.contacts,
         places: holds.places,

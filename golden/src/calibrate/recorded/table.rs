@@ -262,16 +262,12 @@ fn read(path: &Path, table: &Table<'_>, example: &str, guess: &Guess) -> Result<
             if meaning == Meaning::Contact || is_unknown(&text(column)) {
                 continue;
             }
-            let number = numbers.of(cell(column), table.separator, [*line, column + 1])?;
+            let place = [*line, column + 1];
+            let number = numbers.of(cell(column), table.separator, place)?;
             let number = number.filter(|value| value.is_finite()).map(|value| unit * value);
             let stamp = || timestamp(&text(column)).filter(|_| meaning == Meaning::Time);
-            let value = number.or_else(stamp).ok_or_else(|| FrameError::Value {
-                path: path.to_path_buf(),
-                line: *line,
-                column: column + 1,
-                text: text(column).chars().take(40).collect(),
-                remedy: "leave blank what is unknown".to_owned(),
-            })?;
+            let wrong = || FrameError::value(path, place, cell(column), "leave blank what is unknown");
+            let value = number.or_else(stamp).ok_or_else(wrong)?;
             match meaning {
                 Meaning::Force(axis) => force[axis] = Some(value),
                 Meaning::Pressure => pressure = Some(value),
