@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::design::Design;
 use crate::frames::Frames;
-use crate::numbers::{counted, magnitude, middle, rounded};
+use crate::numbers::{counted, magnitude, mean, middle, rounded};
 
 /// Frames that a time constant has at least and at most: the hardware's fixed point holds these.
 pub const FRAMES: [f64; 2] = [2.0, 131_072.0];
@@ -277,10 +277,6 @@ fn strength(sums: &[f64], waited: usize, frames: f64) -> (f64, f64, f64) {
     let [cross, square] = points().fold([0.0; 2], |[cross, square], (y, x)| [cross + x * y, square + x * x]);
     let strength = cross / square;
     (points().map(|(y, x)| (y - strength * x).powi(2)).sum(), frames, strength)
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
 /// Standard deviation over the mean.

@@ -20,6 +20,13 @@ pub(crate) fn middle(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
     sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
 }
 
+/// The mean; 0 of none.
+pub(crate) fn mean(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
+    let mut count = 0_usize;
+    let sum: f64 = values.into_iter().inspect(|_| count += 1).map(|value| *value.borrow()).sum();
+    sum / count.max(1) as f64
+}
+
 /// So many of a thing: "1 frame", "2 frames".
 pub fn counted(count: usize, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::check::{holds, together};
 use crate::dead_taxels::MOST_DEAD;
 use crate::design::{Calibration, Design, MeasuredNoise};
-use crate::numbers::{counted, magnitude, middle as median};
+use crate::numbers::{counted, magnitude, mean, middle as median};
 
 /// Fewer frames give no standard deviation.
 const FRAMES: usize = 10;
@@ -142,15 +142,15 @@ impl AtRest {
         !self.dead.contains(&taxel) && !self.stuck.contains(&taxel)
     }
 
-    /// What the taxels that work read in a frame.
-    fn live(&self, frame: &[f64]) -> Vec<f64> {
-        frame.iter().enumerate().filter(|(taxel, _)| self.works(*taxel)).map(|(_, value)| *value).collect()
+    /// Those that work.
+    fn live(&self) -> impl Iterator<Item = &TaxelAtRest> {
+        self.taxels.iter().filter(|each| self.works(each.taxel))
     }
 
     /// Signs that something lay on the sensor or touched it.
     fn touches(&self, design: &Design, usual: f64) -> Vec<String> {
         let (mut said, full_scale) = (Vec::new(), design.hardware.full_scale_pa);
-        let live: Vec<&TaxelAtRest> = self.taxels.iter().filter(|each| self.works(each.taxel)).collect();
+        let live: Vec<&TaxelAtRest> = self.live().collect();
         if self.noise_pa > LOUD * full_scale {
             said.push(format!(
                 "the median taxel varies by {:.1} Pa, more than a hundredth of hardware.full_scale_pa: did something touch \
@@ -180,10 +180,7 @@ impl AtRest {
     fn others_than_rest(&self, frames: &[Vec<f64>]) -> Option<String> {
         let middles: Vec<f64> =
             (0..self.taxels.len()).map(|taxel| median(frames.iter().map(|frame| frame[taxel]))).collect();
-        let apart = |frame: &Vec<f64>| {
-            let live = self.taxels.iter().filter(|each| self.works(each.taxel));
-            median(live.map(|each| (frame[each.taxel] - middles[each.taxel]).abs()))
-        };
+        let apart = |frame: &Vec<f64>| median(self.live().map(|each| (frame[each.taxel] - middles[each.taxel]).abs()));
         let apart: Vec<f64> = frames.iter().map(apart).collect();
         let least = FAR * median(apart.iter().copied());
         let far: Vec<usize> = (0..frames.len()).filter(|&frame| apart[frame] > least).map(|frame| frame + 1).collect();
@@ -223,7 +220,7 @@ impl AtRest {
                 self.drift
             ));
         }
-        let readings: Vec<f64> = frames.iter().flat_map(|frame| self.live(frame)).collect();
+        let readings: Vec<f64> = frames.iter().flat_map(|frame| self.live().map(|each| frame[each.taxel])).collect();
         for (pick, which) in [(f64::min as fn(f64, f64) -> f64, "least"), (f64::max, "largest")] {
             let end = readings.iter().copied().reduce(pick).unwrap_or(0.0);
             let share =
@@ -252,9 +249,8 @@ impl AtRest {
     /// No frame has load, or nearly all frames with load pull, in words.
     pub fn noise_of(&self, design: &Design, loaded: &[Vec<f64>]) -> Result<MeasuredNoise, String> {
         let above = |frame: &Vec<f64>| -> Vec<f64> {
-            let live = self.taxels.iter().filter(|each| self.works(each.taxel));
             let of = |taxel: usize, value: f64| design.input.to_pa(taxel, value);
-            live.map(|each| of(each.taxel, frame[each.taxel]) - of(each.taxel, each.offset)).collect()
+            self.live().map(|each| of(each.taxel, frame[each.taxel]) - of(each.taxel, each.offset)).collect()
         };
         let above: Vec<Vec<f64>> = loaded.iter().map(above).collect();
         let largest = magnitude(above.iter().flatten());
@@ -302,15 +298,13 @@ impl AtRest {
                     return (0.0, 0.0);
                 }
                 let (gain, _) = design.input.of_taxel(each.taxel);
-                let mean = match &design.input.curve {
+                let reading = match &design.input.curve {
                     // In pascals; that of the mean count is another.
-                    Some(curve) => {
-                        frames.iter().map(|frame| curve.at(frame[each.taxel])).sum::<f64>() / frames.len() as f64
-                    }
+                    Some(curve) => mean(frames.iter().map(|frame| curve.at(frame[each.taxel]))),
                     None => each.offset,
                 };
                 // No offset is -0.
-                (gain, 0.0 - gain * mean)
+                (gain, 0.0 - gain * reading)
             })
             .unzip();
         Ok(Calibration { gain, offset })
@@ -319,7 +313,7 @@ impl AtRest {
 
 fn taxel_at_rest(frames: &[Vec<f64>], taxel: usize) -> TaxelAtRest {
     let count = frames.len() as f64;
-    let mean = |frames: &[Vec<f64>]| frames.iter().map(|frame| frame[taxel]).sum::<f64>() / frames.len() as f64;
+    let mean = |frames: &[Vec<f64>]| mean(frames.iter().map(|frame| frame[taxel]));
     let offset = mean(frames);
     let time = |index: usize| index as f64 - 0.5 * (count - 1.0);
     let readings = || frames.iter().enumerate().map(|(index, frame)| (time(index), frame[taxel] - offset));

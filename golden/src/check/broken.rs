@@ -2,7 +2,7 @@
 
 use super::dead;
 use crate::design::Design;
-use crate::numbers::magnitude;
+use crate::numbers::{magnitude, mean};
 
 /// From so many frames on.
 const FRAMES: usize = 10;
@@ -32,7 +32,7 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], stress: &[Vec<f64>]) -
     for &taxel in &broken {
         let around: Vec<usize> = around(design, taxel).into_iter().filter(|taxel| !broken.contains(taxel)).collect();
         for frame in &mut mended {
-            frame[taxel] = around.iter().map(|&taxel| frame[taxel]).sum::<f64>() / around.len().max(1) as f64;
+            frame[taxel] = mean(around.iter().map(|&taxel| frame[taxel]));
             // Counts stay counts.
             if design.input.counts() || frames.iter().flatten().all(|value| value.fract() == 0.0) {
                 frame[taxel] = frame[taxel].round();
@@ -75,7 +75,7 @@ fn is_lonely(design: &Design, stress: &[Vec<f64>], most: &[f64], taxel: usize) -
     }
     // How it varies, and how those around vary with it.
     let frames = stress.len() as f64;
-    let mean = |taxel: usize| stress.iter().map(|frame| frame[taxel]).sum::<f64>() / frames;
+    let mean = |taxel: usize| mean(stress.iter().map(|frame| frame[taxel]));
     let own = mean(taxel);
     let variance = stress.iter().map(|frame| (frame[taxel] - own).powi(2)).sum::<f64>();
     let goes_with = |next: usize| {

@@ -6,6 +6,7 @@ use super::together;
 use crate::design::{Design, Sensor, Tension};
 use crate::matrices::Matrices;
 use crate::names::MatrixName;
+use crate::numbers::mean;
 use crate::parity::FoldedMatrix;
 use crate::scene::{Scene, SensorErrors};
 
@@ -159,7 +160,7 @@ fn alike(sensor: &Sensor, frames: &[&Vec<f64>], order: Order) -> f64 {
         let taxel = |taxel: usize| frame[order(sensor, taxel % sensor.columns, taxel / sensor.columns)];
         together(sensor, &(0..sensor.taxels()).map(taxel).collect::<Vec<_>>())
     };
-    frames.iter().map(place).sum::<f64>() / frames.len().max(1) as f64
+    mean(frames.iter().map(place))
 }
 
 /// The share of pulls of a contact that suits the sensor, with noise; 0 if there is none.

@@ -2,6 +2,7 @@
 
 use super::{ABOVE_NOISE, LOUD, PRESSES, count, holds, largest};
 use crate::design::Design;
+use crate::numbers::mean;
 use crate::sensor::Sensor;
 
 /// From so many frames on, what stays is separated from what varies.
@@ -67,15 +68,14 @@ fn still(sensor: &Sensor, stress: &[Vec<f64>], full_scale: f64) -> Option<(f64, 
         return None;
     }
     let (frames, taxels) = (stress.len() as f64, sensor.taxels());
-    let means: Vec<f64> =
-        (0..taxels).map(|taxel| stress.iter().map(|frame| frame[taxel]).sum::<f64>() / frames).collect();
+    let means: Vec<f64> = (0..taxels).map(|taxel| mean(stress.iter().map(|frame| frame[taxel]))).collect();
     let rest: Vec<Vec<f64>> =
         stress.iter().map(|frame| frame.iter().zip(&means).map(|(stress, mean)| stress - mean).collect()).collect();
     let squares: f64 = rest.iter().flatten().map(|stress| stress * stress).sum();
     let deviation = (squares / (frames * taxels as f64)).sqrt();
     let moves = rest.iter().map(|frame| largest(frame)).fold(0.0, f64::max) >= LOUD * full_scale;
     // Each frame by its own squares, so that a contact in few frames is not lost among many.
-    let common = rest.iter().map(|frame| together(sensor, frame)).sum::<f64>() / frames;
+    let common = mean(rest.iter().map(|frame| together(sensor, frame)));
     if moves || squares <= 0.0 || common >= TOGETHER || largest(&means) >= OFFSET * full_scale {
         return None;
     }
@@ -88,14 +88,14 @@ fn still(sensor: &Sensor, stress: &[Vec<f64>], full_scale: f64) -> Option<(f64, 
     if has_offset && together(sensor, &means) >= (0.2 + 2.0 / pairs.sqrt()).min(0.5) {
         return None;
     }
-    let mean = rest.iter().flatten().map(|stress| stress.abs()).sum::<f64>() / (frames * taxels as f64);
+    let mean = mean(rest.iter().flatten().map(|stress| stress.abs()));
     Some((if has_offset { largest(&means) } else { 0.0 }, mean))
 }
 
 /// Correlation of taxels with those beside them, about the mean of all, from -1 to 1; 0 of values that are all the same.
 pub(crate) fn together(sensor: &Sensor, values: &[f64]) -> f64 {
     let (columns, rows) = (sensor.columns, sensor.rows);
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let mean = mean(values);
     let at = |x: usize, y: usize| values[y * columns + x] - mean;
     let (mut products, mut squares) = (0.0, 0.0);
     let mut pair = |a: f64, b: f64| {

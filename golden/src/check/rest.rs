@@ -3,6 +3,7 @@
 use super::unit::Scale;
 use super::{FAINT, count, holds, largest};
 use crate::design::Design;
+use crate::numbers::mean;
 
 /// This part of the taxels touches nothing: the least loaded ones, or those farthest from where a frame has its peak.
 const PART: usize = 4;
@@ -28,12 +29,12 @@ pub(super) fn check(design: &Design, loaded: &[Vec<f64>], is_tared: bool) -> Opt
         taxels.sort_by(|&a, &b| distance(b).total_cmp(&distance(a)));
         let rest: Vec<f64> = taxels.iter().take(frame.len().div_ceil(PART)).map(|&taxel| frame[taxel]).collect();
         let above = rest.iter().filter(|&&stress| stress > 0.0).count() as f64 / rest.len() as f64;
-        let mean = rest.iter().sum::<f64>() / rest.len() as f64;
+        let mean = mean(&rest);
         if above >= ONE_SIDE && mean > LIFTED * largest(frame) { mean } else { 0.0 }
     };
     let rests: Vec<f64> = loaded.iter().map(rest).filter(|&mean| mean > 0.0).collect();
     holds(rests.len(), loaded.len()).then(|| {
-        let mean = rests.iter().sum::<f64>() / rests.len() as f64;
+        let mean = mean(&rests);
         format!(
             "even the taxels that touch nothing pull in {} of {}, by {mean:.0} Pa: was something on the sensor when it was \
              tared, or has it drifted? Tare it anew, or write its offsets into the file of sensor.calibration",
@@ -49,11 +50,11 @@ fn pressed(design: &Design, loaded: &[Vec<f64>], is_tared: bool) -> Option<Strin
         let mut sorted = frame.clone();
         sorted.sort_by(|a, b| b.total_cmp(a));
         let quarter = &sorted[..sorted.len().div_ceil(PART)];
-        quarter.iter().sum::<f64>() / quarter.len() as f64
+        mean(quarter)
     };
     let rests: Vec<f64> = loaded.iter().map(rest).collect();
     let pressed = rests.iter().zip(loaded).filter(|(rest, frame)| **rest < -FAINT * largest(frame)).count();
-    let mean = rests.iter().sum::<f64>() / rests.len() as f64;
+    let mean = mean(&rests);
     holds(pressed, loaded.len()).then(|| {
         let cause = if -2.0 * mean > design.hardware.full_scale_pa {
             format!(

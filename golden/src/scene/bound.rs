@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::spectral::UnitResponses;
 use super::{Contact, Kind, Medium, Scene, SceneError, Shape, unit_responses};
+use crate::numbers::mean;
 use crate::sensor::Sensor;
 
 /// Steps of place and radius for the slopes, in depths: the stress changes over a depth.
@@ -84,7 +85,7 @@ fn quantile(variances: &[[f64; 2]], share: f64) -> f64 {
     let squares: Vec<f64> = squares.collect();
     let below = |length: f64| {
         let share = |square: &f64| -(-0.5 * length.powi(2) / square).exp_m1();
-        squares.iter().map(share).sum::<f64>() / squares.len() as f64
+        mean(squares.iter().map(share))
     };
     let largest = squares.iter().copied().fold(0.0, f64::max);
     let (mut low, mut high) = (0.0, (-2.0 * largest * (1.0 - share).ln()).sqrt());

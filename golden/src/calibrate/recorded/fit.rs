@@ -7,7 +7,7 @@ use super::readings::Readings;
 use super::rows::Rows;
 use super::shape::{self, Kind, Shape, Terms};
 use crate::design::Design;
-use crate::numbers::{correlation, middle};
+use crate::numbers::{correlation, mean, middle};
 
 /// Loads below this share of the largest count as that much: their relative error is the scale's.
 const LIGHT: f64 = 0.1;
@@ -195,7 +195,7 @@ impl<'a> Fitter<'a> {
                 trust * (simple.errors[hold].powi(2) - best.errors[hold].powi(2))
             })
             .collect();
-        let mean = gains.iter().sum::<f64>() / gains.len() as f64;
+        let mean = mean(&gains);
         let variance =
             gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (gains.len() as f64 - 1.0).max(1.0);
         mean <= CHANCE * (variance / gains.len() as f64).sqrt()
@@ -328,10 +328,8 @@ impl<'a> Fitter<'a> {
             |odd: usize| -> Vec<usize> { self.parts().skip(odd).step_by(2).flat_map(|[_, left]| left).collect() };
         let [a, b] = [0, 1].map(|odd| self.fit_gains(&found.shape, prior, &half(odd)));
         let touched: Vec<usize> = (0..a.len()).filter(|&taxel| found.delta[taxel] != 0.0).collect();
-        let rms = |of: &dyn Fn(usize) -> f64| {
-            (touched.iter().map(|&taxel| of(taxel).powi(2)).sum::<f64>() / touched.len().max(1) as f64).sqrt()
-        };
-        let mean = touched.iter().map(|&taxel| found.delta[taxel]).sum::<f64>() / touched.len().max(1) as f64;
+        let rms = |of: &dyn Fn(usize) -> f64| mean(touched.iter().map(|&taxel| of(taxel).powi(2))).sqrt();
+        let mean = mean(touched.iter().map(|&taxel| found.delta[taxel]));
         [rms(&|taxel| found.delta[taxel] - mean), rms(&|taxel| a[taxel] - b[taxel]) / 2_f64.sqrt()]
     }
 

@@ -10,7 +10,7 @@ use super::table::Measured;
 use crate::check::ends::end_of_range;
 use crate::dead_taxels::MOST_DEAD;
 use crate::design::Design;
-use crate::numbers::counted;
+use crate::numbers::{counted, mean};
 
 /// A contact ends where the centre of pressure has moved by this many pitches.
 const MOVED: f64 = 0.5;
@@ -92,7 +92,7 @@ pub(super) fn part(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
         }
         x
     };
-    let middle = alive.iter().map(|&taxel| rest[taxel]).sum::<f64>() / alive.len() as f64;
+    let middle = mean(alive.iter().map(|&taxel| rest[taxel]));
     let under_load = loaded.iter().map(|&k| alive.iter().map(move |&taxel| sign * frames[k][taxel]));
     let end = end_of_range(&under_load, sign * middle).map(|(end, _)| end);
     if let Some(end) = end {
@@ -232,9 +232,8 @@ fn holds(
             let frames = first..end;
             let count = frames.len() as f64;
             let readings: Vec<Vec<f64>> = frames.clone().map(above).collect();
-            let x =
-                (0..readings[0].len()).map(|taxel| readings.iter().map(|x| x[taxel]).sum::<f64>() / count).collect();
-            let mean = |axis: usize| {
+            let x = (0..readings[0].len()).map(|taxel| mean(readings.iter().map(|x| x[taxel]))).collect();
+            let force = |axis: usize| {
                 frames.clone().map(|k| measured.forces[k][axis]).sum::<Option<f64>>().map(|sum| sum / count)
             };
             let fifths = |values: Vec<f64>| {
@@ -252,8 +251,8 @@ fn holds(
             });
             holds.push(Hold {
                 x,
-                force: [0, 1, 2].map(mean),
-                load: frames.clone().map(load).sum::<f64>() / count,
+                force: [0, 1, 2].map(force),
+                load: mean(frames.clone().map(load)),
                 contact,
                 place: places[contact],
                 creep,

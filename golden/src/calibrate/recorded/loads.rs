@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::lag::{self, Lags, Parts, Unclear};
 use super::table::{Measured, Pairing};
 use crate::design::Design;
-use crate::numbers::{counted, magnitude, middle, sorted};
+use crate::numbers::{counted, magnitude, mean, middle, sorted};
 
 /// Loads below this share of the largest are rest.
 pub(super) const REST: f64 = 0.01;
@@ -247,13 +247,11 @@ pub(super) fn rest(
             let counts = sorted(at_rest.iter().map(|&k| frames[k][taxel]));
             // Of whole counts a median loses what the mean of the middle half keeps.
             let middle = &counts[counts.len() / 4..counts.len() - counts.len() / 4];
-            middle.iter().sum::<f64>() / middle.len() as f64
+            mean(middle)
         })
         .collect();
     let noise = (at_rest.len() >= 5).then(|| {
-        let of = |taxel: usize| {
-            at_rest.iter().map(|&k| (frames[k][taxel] - middles[taxel]).abs()).sum::<f64>() / at_rest.len() as f64
-        };
+        let of = |taxel: usize| mean(at_rest.iter().map(|&k| (frames[k][taxel] - middles[taxel]).abs()));
         1.25 * alive.iter().map(|&taxel| of(taxel)).sum::<f64>() / alive.len() as f64
     });
     (of_all(&middles, &alive), noise)

@@ -14,7 +14,7 @@ use super::shape::{self, Kind, Shape, Terms};
 use super::table::Measured;
 use crate::dead_taxels::MOST_DEAD;
 use crate::design::Design;
-use crate::numbers::{magnitude, middle};
+use crate::numbers::{magnitude, mean, middle};
 
 /// A taxel that reads less than this share of what the others do is dead.
 const DEAD: f64 = 0.1;
@@ -88,7 +88,7 @@ pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
     }
     let scores: Vec<(Kind, Vec<f64>)> =
         folds.iter().flat_map(|folds| kinds.iter().map(|&kind| (kind, work.validate(kind, folds)))).collect();
-    let rms = |errors: &[f64]| (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
+    let rms = |errors: &[f64]| mean(errors.iter().map(|error| error * error)).sqrt();
     let best = scores.iter().map(|(_, errors)| rms(errors)).fold(f64::INFINITY, f64::min);
     let chosen = scores.iter().find(|(_, errors)| rms(errors) <= AS_GOOD * best + ALIKE);
     let kind = chosen.map_or(kinds[0], |(kind, _)| *kind);
@@ -98,15 +98,15 @@ pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
     let peaks = work.peaks(&shape, &gains);
     let range = [peaks.iter().copied().fold(f64::INFINITY, f64::min), magnitude(&peaks)];
     let calibrated = work.readings.calibrated(&design, &shape, &gains, range, &mut remarks);
-    let mean = |holds: &Step| {
+    let pressure = |holds: &Step| {
         let of = |taxel: usize| gains[taxel] * shape.at(taxel, holds.x[taxel], &work.readings.counts);
-        work.living().map(of).sum::<f64>() / work.living().count() as f64
+        mean(work.living().map(of))
     };
     let shown = parted.all.iter().map(|hold| Hold {
         frames: [hold.frames.start, hold.frames.end - 1],
         place: 0,
         measured_n: hold.load / reads,
-        found_n: mean(hold) / reads,
+        found_n: pressure(hold) / reads,
     });
     let mut recorded = Recorded {
         holds: shown.collect(),
@@ -184,7 +184,7 @@ impl<'a> Uniform<'a> {
                 }
                 gains[taxel] = if squares > 0.0 { (reads / squares).clamp(1e-2, 16.0) } else { 1.0 };
             }
-            let mean = self.living().map(|taxel| gains[taxel]).sum::<f64>() / count;
+            let mean = mean(self.living().map(|taxel| gains[taxel]));
             self.living().for_each(|taxel| gains[taxel] /= mean);
         }
         // The curve belongs to the last gains.
@@ -269,6 +269,5 @@ fn border(recorded: &Recorded) -> f64 {
         let at_border = x == 0 || y == 0 || x + 1 == sensor.columns || y + 1 == sensor.rows;
         if at_border { &mut outside } else { &mut inside }.push(1.0 / gain.gain);
     }
-    let mean = |reads: &[f64]| reads.iter().sum::<f64>() / reads.len() as f64;
     if inside.is_empty() || outside.is_empty() { 0.0 } else { 1.0 - mean(&outside) / mean(&inside) }
 }
