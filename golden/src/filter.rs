@@ -10,31 +10,27 @@ use crate::matrices::Matrices;
 use crate::names::MatrixName;
 use crate::parity::{FoldedMatrix, sign};
 
-/// Why a filter cannot be used.
+/// Why a filter cannot be used, in words.
 #[derive(Debug, thiserror::Error)]
-pub enum FilterError {
+#[error("{0}")]
+pub struct FilterError(pub(crate) String);
+
+impl FilterError {
     /// F3 before its search.
-    #[error(
-        "the filter f3 has reference scenes but no choices yet; run `sptfra tune-filter DESIGN.toml --out RESOLVED.toml` \
-         once and use RESOLVED.toml"
-    )]
-    Unresolved,
+    pub fn unresolved() -> Self {
+        Self(
+            "the filter f3 has reference scenes but no choices yet; run `sptfra tune-filter DESIGN.toml --out RESOLVED.toml` \
+             once and use RESOLVED.toml"
+                .to_owned(),
+        )
+    }
+
     /// Nothing of a row is left, so a taxel would get no result.
-    #[error("the filter {filter} empties row {row} of {matrix}; use a weaker filter (f1: smaller l, f2: larger p)")]
-    EmptyRow {
-        /// The matrix, with its kind.
-        matrix: String,
-        /// The first empty row, from 0.
-        row: usize,
-        /// Its filter.
-        filter: MatrixFilter,
-    },
-    /// F3 with the reduced plan.
-    #[error(
-        "the filter f3 chooses for each matrix of the paper, and the reduced plan has other matrices; write \
-         plan = \"paper\" under [algorithm], or another filter"
-    )]
-    Reduced,
+    pub(crate) fn empty_row(matrix: &str, row: usize, filter: MatrixFilter) -> Self {
+        Self(format!(
+            "the filter {filter} empties row {row} of {matrix}; use a weaker filter (f1: smaller l, f2: larger p)"
+        ))
+    }
 }
 
 /// The 13 matrices after the filter, in compressed sparse row form.
@@ -48,12 +44,12 @@ impl FilteredMatrices {
     ///
     /// # Errors
     ///
-    /// [`FilterError::Unresolved`] for F3 without choices, others when a matrix or a row of one loses every entry.
+    /// [`FilterError::unresolved`] for F3 without choices, others when a matrix or a row of one loses every entry.
     pub fn new(matrices: &Matrices, filter: &Filter) -> Result<Self, FilterError> {
         let thirteen = MatrixName::ALL
             .into_iter()
             .map(|name| {
-                let filter = filter.of(name).ok_or(FilterError::Unresolved)?;
+                let filter = filter.of(name).ok_or_else(FilterError::unresolved)?;
                 filtered(matrices, name, filter).map(Arc::new)
             })
             .collect::<Result<_, FilterError>>()?;
@@ -150,7 +146,7 @@ fn rule(matrix: &DMatrix<f64>, filter: MatrixFilter) -> impl Fn(usize, usize) ->
 fn filtered(matrices: &Matrices, name: MatrixName, filter: MatrixFilter) -> Result<CsrMatrix<f64>, FilterError> {
     let matrix = apply(&matrices.dense(name), filter);
     match matrix.row_iter().position(|row| row.nnz() == 0) {
-        Some(row) => Err(FilterError::EmptyRow { matrix: format!("matrix {name}"), row, filter }),
+        Some(row) => Err(FilterError::empty_row(&format!("matrix {name}"), row, filter)),
         None => Ok(matrix),
     }
 }

@@ -150,14 +150,20 @@ impl ReducedMatrices {
     ///
     /// # Errors
     ///
-    /// [`FilterError::Reduced`] for F3, whose choices are for the thirteen matrices of the paper,
-    /// [`FilterError::EmptyRow`] when a row loses every entry.
+    /// [`FilterError`] for F3, whose choices are for the thirteen matrices of the paper,
+    /// or when a row loses every entry.
     pub fn new(matrices: &Matrices, orbits: &Orbits, filter: &Filter) -> Result<Self, FilterError> {
         let rule = match filter {
             Filter::None => MatrixFilter::None,
             Filter::F1 { l } => MatrixFilter::F1 { l: *l },
             Filter::F2 { p } => MatrixFilter::F2 { p: *p },
-            Filter::F3 { .. } => return Err(FilterError::Reduced),
+            Filter::F3 { .. } => {
+                return Err(FilterError(
+                    "the filter f3 chooses for each matrix of the paper, and the reduced plan has other matrices; write \
+                     plan = \"paper\" under [algorithm], or another filter"
+                        .to_owned(),
+                ));
+            }
         };
         let Matrices { c31, c32, c33, .. } = matrices;
         let a = [MatrixName::A1, MatrixName::A2, MatrixName::A3].map(|name| matrices.folded(name));
@@ -248,7 +254,7 @@ fn filtered(
         if kept.is_empty() && thresholds.iter().all(|&threshold| threshold == 0.0) {
             kept.push(entry(row));
         }
-        let empty = || FilterError::EmptyRow { matrix: format!("the folded matrix {name}"), row, filter };
+        let empty = || FilterError::empty_row(&format!("the folded matrix {name}"), row, filter);
         if kept.is_empty() { Err(empty()) } else { Ok(kept) }
     });
     Ok(FoldedRows { parity: folded.parity, rows: rows.collect::<Result<_, _>>()? })

@@ -9,8 +9,7 @@ pub(crate) struct Check<'a> {
 
 impl Check<'_> {
     pub(crate) fn value(&self, key: &str, problem: impl Into<String>, remedy: impl Into<String>) -> DesignError {
-        let (problem, remedy) = (problem.into(), remedy.into());
-        DesignError::Value { origin: self.origin.to_owned(), key: key.to_owned(), problem, remedy }
+        DesignError(format!("{}: {key} {}; {}", self.origin, problem.into(), remedy.into()))
     }
 
     /// The error of a key, if a rule is broken.

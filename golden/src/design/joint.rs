@@ -130,7 +130,7 @@ pub(super) fn correction(
     Correction::read_csv(&text, half_window).map_err(|(line, problem)| {
         let remedy =
             "take the file that was written with the design, or remove [algorithm.correction] and run `sptfra calibrate`";
-        DesignError::Table { path, line, problem, remedy: remedy.to_owned() }
+        DesignError::line(&path, line, problem, remedy)
     })
 }
 

@@ -187,7 +187,7 @@ impl Design {
     ///
     /// # Errors
     ///
-    /// [`DesignError::Read`] and [`DesignError::Syntax`].
+    /// A file that cannot be read or is no TOML.
     pub fn inputs_at(path: &Path) -> Result<Vec<PathBuf>, DesignError> {
         let mut files =
             read::files_named_in(&text_of(path)?, &path.display().to_string(), FileSource::folder_of(path))?;
@@ -224,6 +224,11 @@ fn from_text(text: &str, origin: &str, beside: FileSource<'_>) -> Result<Design,
     resolve::design(read::keys(text, origin, beside)?, origin, beside)
 }
 
-pub(crate) fn text_of(path: &Path) -> Result<String, DesignError> {
-    std::fs::read_to_string(path).map_err(|source| DesignError::Read { path: path.to_path_buf(), source })
+/// The text of a design or scene file.
+///
+/// # Errors
+///
+/// [`DesignError`] with the file that is meant if there is none.
+pub fn text_of(path: &Path) -> Result<String, DesignError> {
+    std::fs::read_to_string(path).map_err(|source| DesignError::read(path, &source))
 }

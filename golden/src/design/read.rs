@@ -77,13 +77,11 @@ pub fn syntax_position(error: &toml::de::Error, text: &str, origin: &str) -> Des
     let before = text.get(..offset).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |position| position + 1);
     let context = text.get(line_start..).and_then(|rest| rest.lines().next()).unwrap_or("").trim();
-    DesignError::Syntax {
-        origin: origin.to_owned(),
-        line: before.matches('\n').count() + 1,
-        column: before.get(line_start..).map_or(0, |text| text.chars().count()) + 1,
-        context: context.chars().take(80).collect(),
-        message: plain(error.message()),
-    }
+    let context: String = context.chars().take(80).collect();
+    let near = if context.is_empty() { String::new() } else { format!(", in `{context}`") };
+    let line = before.matches('\n').count() + 1;
+    let column = before.get(line_start..).map_or(0, |text| text.chars().count()) + 1;
+    DesignError(format!("{origin}, line {line}, column {column}{near}: {}", plain(error.message())))
 }
 
 /// A message of the parser without the names that types have in Rust, and with the key that an unknown one is like.

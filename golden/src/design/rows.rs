@@ -1,5 +1,6 @@
 //! The rows of a table that a design names, separated as those of frames.
 
+use std::fmt::Display;
 use std::path::PathBuf;
 
 use super::DesignError;
@@ -48,7 +49,7 @@ impl Rows {
     /// Reads a file of those `beside` the design. A byte order mark is skipped.
     pub(super) fn read(file: &str, beside: FileSource<'_>) -> Result<Self, DesignError> {
         let path = beside.path(file);
-        let text = beside.read(file).map_err(|source| DesignError::Read { path: path.clone(), source })?;
+        let text = beside.read(file).map_err(|source| DesignError::read(&path, &source))?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         let lines = (1..).zip(text.lines().map(str::trim));
         let lines = lines.filter(|(_, content)| !content.is_empty() && !content.starts_with('#'));
@@ -90,7 +91,7 @@ impl Rows {
     }
 
     /// What is wrong on a line.
-    pub(super) fn wrong(&self, line: usize, problem: String, remedy: impl Into<String>) -> DesignError {
-        DesignError::Table { path: self.path.clone(), line, problem, remedy: remedy.into() }
+    pub(super) fn wrong(&self, line: usize, problem: impl Display, remedy: impl Display) -> DesignError {
+        DesignError::line(&self.path, line, problem, remedy)
     }
 }

@@ -30,7 +30,7 @@ impl Solver {
         let taxels = self.taxels();
         let rest = values.len() % taxels;
         if rest > 0 {
-            return Err(SolverError::FrameLength { found: rest, expected: taxels });
+            return Err(SolverError::length(rest, taxels));
         }
         if values.len() == taxels {
             // Of a stream: what a batch needs would take longer than the frame.

@@ -19,14 +19,15 @@ pub use separate::{CHANGE, REACH};
 pub use slips::Slips;
 pub use workspace::Workspace;
 
+use std::fmt::Display;
 use std::sync::{Arc, OnceLock};
 
 use crate::contacts::{ContactForces, Finder};
 use crate::design::{Design, Outputs, PlanKind, Slip};
 use crate::estimators::standard_error::Confidence;
 use crate::estimators::{Estimate, Friction, FrictionScratch, Inputs};
-use crate::filter::{FilterError, FilteredMatrices};
-use crate::matrices::{Matrices, MatrixError};
+use crate::filter::FilteredMatrices;
+use crate::matrices::Matrices;
 use crate::parity::COMPONENTS;
 use crate::products::batch::Blocks;
 use crate::products::{Engine, PaperMatrices, ProductList};
@@ -37,33 +38,16 @@ use reading::Reader;
 /// middle may show none.
 pub const PULLING: f64 = 0.35;
 
-/// Why a solver cannot be made or a frame cannot be solved.
+/// Why a solver cannot be made or a frame cannot be solved, in words.
 #[derive(Debug, thiserror::Error)]
-pub enum SolverError {
-    /// The sensor's matrices cannot be computed.
-    #[error("{name}: {source}")]
-    Matrices {
-        /// Name of the design.
-        name: String,
-        /// Why.
-        source: MatrixError,
-    },
-    /// The filter cannot be used.
-    #[error("{name}: {source}")]
-    Filter {
-        /// Name of the design.
-        name: String,
-        /// Why.
-        source: FilterError,
-    },
+#[error("{0}")]
+pub struct SolverError(String);
+
+impl SolverError {
     /// A frame of the wrong length.
-    #[error("the frame has {found} values, the sensor {expected} taxels; give one value for each taxel")]
-    FrameLength {
-        /// Values in the frame.
-        found: usize,
-        /// Taxels of the sensor.
-        expected: usize,
-    },
+    fn length(found: usize, expected: usize) -> Self {
+        Self(format!("the frame has {found} values, the sensor {expected} taxels; give one value for each taxel"))
+    }
 }
 
 /// What one frame yields.
@@ -209,11 +193,11 @@ impl Solver {
     ///
     /// # Errors
     ///
-    /// [`SolverError::Matrices`] for a sensor whose matrices are singular or too ill-conditioned,
-    /// [`SolverError::Filter`] for a filter that leaves nothing of a row.
+    /// [`SolverError`] for a sensor whose matrices are singular or too ill-conditioned, or a filter that leaves nothing of a
+    /// row.
     pub fn new(design: &Design) -> Result<Self, SolverError> {
-        let name = || design.name.clone();
-        let matrices = Matrices::of(design).map_err(|source| SolverError::Matrices { name: name(), source })?;
+        let wrong = |error: &dyn Display| SolverError(format!("{}: {error}", design.name));
+        let matrices = Matrices::of(design).map_err(|error| wrong(&error))?;
         let filter = &design.algorithm.filter;
         match design.algorithm.plan {
             PlanKind::Paper => {
@@ -227,7 +211,7 @@ impl Solver {
                 Self::with(design, matrices, Products::Reduced(Box::new(OfPlan { engine, blocks: OnceLock::new() })))
             }),
         }
-        .map_err(|source| SolverError::Filter { name: name(), source })
+        .map_err(|error| wrong(&error))
     }
 
     /// A solver by the paper's plan from matrices already computed for the same design, whatever plan that names.

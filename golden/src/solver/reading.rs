@@ -110,7 +110,7 @@ impl Reader {
     pub(crate) fn decode(&self, frame: &[f64], b: &mut [f64]) -> Result<Status, SolverError> {
         let taxels = self.taxels();
         if frame.len() != taxels {
-            return Err(SolverError::FrameLength { found: frame.len(), expected: taxels });
+            return Err(SolverError::length(frame.len(), taxels));
         }
         let is_dead = |taxel| self.dead.contains(taxel);
         if frame.iter().enumerate().any(|(taxel, value)| !value.is_finite() && !is_dead(taxel)) {

@@ -48,7 +48,7 @@ impl<'a> Filtered<'a> {
             Self::Thirteen(filtered, _) => Ok((name, filtered.nnz(name))),
             // One of the thirteen at a time: of a large sensor they do not fit into memory together.
             Self::Ten(_, matrices) => {
-                let filter = filter.of(name).ok_or(FilterError::Unresolved)?;
+                let filter = filter.of(name).ok_or_else(FilterError::unresolved)?;
                 Ok((name, nnz_of(matrices, name, filter)))
             }
         };

@@ -14,7 +14,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use golden::design::{DesignError, Sensor};
+use golden::design::{DesignError, Sensor, text_of};
 use golden::frames::FrameError;
 use golden::output::OutputError;
 use golden::scene::{Contact, Kind, Scene, SceneError, SceneFrame, Shear};
@@ -135,8 +135,7 @@ impl SweepScene {
     /// # Errors
     /// [`SweepError::At`] with the file.
     pub fn load(path: &Path) -> Result<Self, SweepError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| DesignError::Read { path: path.to_owned(), source })?;
+        let text = text_of(path)?;
         let origin = path.display().to_string();
         let scene = Scene::from_toml(&text, &origin)?;
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());

@@ -31,7 +31,7 @@ const APART: f64 = 0.03;
 ///
 /// [`RecordedError::Recording`] for frames and forces that do not belong together or tell nothing at all.
 pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> Result<Recorded, RecordedError> {
-    let wrong = |wrong| RecordedError::of(design, wrong);
+    let wrong = |wrong| RecordedError::of(&design.name, wrong);
     let is_sideways = sideways::is_all(measured);
     let follow = if is_sideways { Follow::Sideways(sideways::found(design, frames)?) } else { Follow::Forces };
     let (paired, measured, mut remarks) = loads::pair(design, frames, measured, &follow).map_err(wrong)?;
@@ -115,7 +115,7 @@ fn verify(
     let wrong = |problem| {
         let remedy = "do frames and forces belong together? Give both a column of times, or cut them so that both begin with \
                       the same touch";
-        RecordedError::of(design, (problem, remedy.to_owned()))
+        RecordedError::of(&design.name, (problem, remedy.to_owned()))
     };
     let solver = Solver::new(design)?;
     let [_, largest] = fitter.range();

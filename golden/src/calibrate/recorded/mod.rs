@@ -22,7 +22,7 @@ mod sideways;
 mod table;
 mod uniform;
 
-use std::path::PathBuf;
+use std::fmt::Display;
 
 pub use force::fit_forces;
 pub use report::{Errors, Hold, Recorded, TaxelGain};
@@ -30,43 +30,26 @@ pub use table::{Measured, read_forces, read_pressures};
 pub(crate) use table::{forces, table};
 pub use uniform::fit_uniform;
 
-use crate::design::Design;
 use crate::frames::FrameError;
 use crate::solver::SolverError;
 
 /// Why constants cannot be found from a recording.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordedError {
-    /// A file of forces or pressures.
-    #[error("{}: {problem}; {remedy}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        problem: String,
-        /// What to do.
-        remedy: String,
-    },
+    /// What is wrong with a file, or with frames and forces that tell nothing, and what to do.
+    #[error("{0}")]
+    Wrong(String),
     /// A file that cannot be read.
     #[error(transparent)]
     Read(#[from] FrameError),
-    /// Frames and forces that tell nothing.
-    #[error("{name}: {problem}; {remedy}")]
-    Recording {
-        /// Name of the design.
-        name: String,
-        /// What is wrong.
-        problem: String,
-        /// What to do.
-        remedy: String,
-    },
     /// The sensor's matrices or the filter.
     #[error(transparent)]
     Solver(#[from] SolverError),
 }
 
 impl RecordedError {
-    fn of(design: &Design, (problem, remedy): loads::Wrong) -> Self {
-        Self::Recording { name: design.name.clone(), problem, remedy }
+    /// Of a file or a design.
+    fn of(what: impl Display, (problem, remedy): loads::Wrong) -> Self {
+        Self::Wrong(format!("{what}: {problem}; {remedy}"))
     }
 }

@@ -43,7 +43,7 @@ pub(super) fn found(design: &Design, frames: &[Vec<f64>]) -> Result<Vec<[f64; 3]
             format!("no F_z is known, and by the design {pulls} of {loaded} frames pull")
         };
         return Err(RecordedError::of(
-            design,
+            &design.name,
             (
                 problem,
                 "calibrate the design with F_z first, weights do; `sptfra check` says what is wrong with the frames"
@@ -61,7 +61,7 @@ pub(super) fn fit(
     mut measured: Measured,
     mut remarks: Vec<String>,
 ) -> Result<Recorded, RecordedError> {
-    let wrong = |wrong| RecordedError::of(design, wrong);
+    let wrong = |wrong| RecordedError::of(&design.name, wrong);
     let normal = |k: usize| found[k][2];
     let known = |k: &usize| measured.forces[*k][0].is_some() || measured.forces[*k][1].is_some();
     let known: Vec<usize> = (0..frames.len()).filter(known).collect();

@@ -199,7 +199,7 @@ pub(crate) fn table<'a>(path: &Path, text: &'a [u8]) -> Result<Table<'a>, FrameE
 }
 
 fn read(path: &Path, table: &Table<'_>, example: &str, guess: &Guess) -> Result<Measured, RecordedError> {
-    let wrong = |problem: String, remedy: String| RecordedError::File { path: path.to_path_buf(), problem, remedy };
+    let wrong = |problem: String, remedy: String| RecordedError::of(path.display(), (problem, remedy));
     let columns = table.rows.first().map_or(0, |(_, fields)| fields.len());
     if columns == 0 {
         return Err(wrong("no line of numbers in it".to_owned(), "write one line for each frame".to_owned()));

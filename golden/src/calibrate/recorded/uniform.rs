@@ -33,7 +33,7 @@ const BORDER: f64 = 0.1;
 ///
 /// [`RecordedError::Recording`] for pressures that do not belong to the frames, or too many taxels that read nothing.
 pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> Result<Recorded, RecordedError> {
-    let wrong = |wrong| RecordedError::of(design, wrong);
+    let wrong = |wrong| RecordedError::of(&design.name, wrong);
     let (paired, measured, mut remarks) =
         loads::pair(design, frames, measured, &loads::Follow::Pressures).map_err(wrong)?;
     let frames = &frames[paired];
