@@ -63,7 +63,7 @@ impl<'a> Resolved<'a> {
     ///
     /// # Errors
     ///
-    /// [`ResolvedError::Overwrites`] and [`ResolvedError::Calibration`].
+    /// [`ResolvedError::Taken`], too for a calibration that is not the design's.
     pub fn beside(design: &Design, inputs: &[PathBuf], out: &'a Path) -> Result<Self, ResolvedError> {
         let resolved = Self { design: out, is_anew: false, source: None };
         keep_apart(out, inputs)?;
@@ -78,7 +78,7 @@ impl<'a> Resolved<'a> {
     ///
     /// # Errors
     ///
-    /// [`ResolvedError::Design`] and [`ResolvedError::Overwrites`].
+    /// [`ResolvedError`].
     pub fn anew(path: &Path, out: &'a Path) -> Result<Self, ResolvedError> {
         let inputs = Design::inputs_at(path)?;
         let source = fs::read_to_string(path).ok();

@@ -19,7 +19,7 @@ impl Solver {
     ///
     /// # Errors
     ///
-    /// [`SolverError::FrameLength`] for values that are no whole frames.
+    /// Values that are no whole frames.
     pub fn solve_on_all_cores<P: Send>(
         &self,
         values: &[f64],

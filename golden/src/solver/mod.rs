@@ -268,7 +268,7 @@ impl Solver {
     ///
     /// # Errors
     ///
-    /// [`SolverError::FrameLength`] only; a frame with a NaN, without contact or without a direction gets a status.
+    /// A frame of another length only. A frame with a NaN, without contact or without a direction gets a status.
     pub fn solve(&self, frame: &[f64]) -> Result<Solution, SolverError> {
         let mut solution = Solution::zeros(Status::default(), 0);
         self.solve_into(&mut self.workspace(), frame, &mut solution)?;

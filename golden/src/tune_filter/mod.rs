@@ -99,8 +99,7 @@ fn candidate_filters(taxels: usize) -> Vec<MatrixFilter> {
 ///
 /// # Errors
 ///
-/// [`TuneFilterError::Matrices`] for a sensor whose matrices are singular, [`TuneFilterError::Frames`] for frames of another
-/// sensor, [`TuneFilterError::Filter`] for a candidate that leaves a row without entries.
+/// A sensor whose matrices are singular, frames of another sensor, a candidate that leaves a row without entries.
 pub fn tune_filter(
     design: &Design,
     frames: &[SceneFrame],
@@ -143,7 +142,7 @@ pub fn tune_filter(
 ///
 /// # Errors
 ///
-/// [`SolverError::FrameLength`] for frames of another sensor.
+/// Frames of another sensor.
 pub fn mean_error(solver: &Solver, frames: &[SceneFrame]) -> Result<f64, SolverError> {
     let mut sum = 0.0;
     for frame in frames {

@@ -29,7 +29,7 @@ const APART: f64 = 0.03;
 ///
 /// # Errors
 ///
-/// [`RecordedError::Recording`] for frames and forces that do not belong together or tell nothing at all.
+/// [`RecordedError::Wrong`] for frames and forces that do not belong together or tell nothing at all.
 pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> Result<Recorded, RecordedError> {
     let wrong = |wrong| RecordedError::of(&design.name, wrong);
     let is_sideways = sideways::is_all(measured);

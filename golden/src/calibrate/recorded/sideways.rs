@@ -25,7 +25,7 @@ pub(super) fn is_all(measured: &Measured) -> bool {
 ///
 /// # Errors
 ///
-/// [`RecordedError::Recording`] for frames in which, by the design, nothing presses.
+/// [`RecordedError::Wrong`] for frames in which, by the design, nothing presses.
 pub(super) fn found(design: &Design, frames: &[Vec<f64>]) -> Result<Vec<[f64; 3]>, RecordedError> {
     let solver = Solver::new(design)?;
     let of = |frame: &Vec<f64>| -> Result<[f64; 3], RecordedError> {

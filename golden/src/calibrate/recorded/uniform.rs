@@ -31,7 +31,7 @@ const BORDER: f64 = 0.1;
 ///
 /// # Errors
 ///
-/// [`RecordedError::Recording`] for pressures that do not belong to the frames, or too many taxels that read nothing.
+/// [`RecordedError::Wrong`] for pressures that do not belong to the frames, or too many taxels that read nothing.
 pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> Result<Recorded, RecordedError> {
     let wrong = |wrong| RecordedError::of(&design.name, wrong);
     let (paired, measured, mut remarks) =
