@@ -3,7 +3,6 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use golden::solver::Solution;
 use hdl_gen::emit::emit;
 use hdl_gen::inspection::{figures, warnings};
 use hdl_gen::plan::{Plan, PlanError};
@@ -11,7 +10,7 @@ use hdl_gen::write::{check_folder, write_folder};
 use pyo3::prelude::*;
 use serde_json::json;
 use testbench::co_simulation::{CoSimulation, planned};
-use testbench::stream_words::{Answer, decode, packets};
+use testbench::stream_words::{decode, packets};
 
 use crate::arrays::{Forces, Frames};
 use crate::design::Design;
@@ -76,7 +75,7 @@ pub fn simulate<'py>(
             // An answer of another length is a fault already; its forces stay zeros.
             if let Some(answer) = decode(words) {
                 let place = (index / golden::solver::PIECE, index % golden::solver::PIECE);
-                places[place.0].put(place.1, &solution(answer));
+                places[place.0].put(place.1, &answer);
             }
         }
         drop(places);
@@ -87,11 +86,4 @@ pub fn simulate<'py>(
 
 fn named(design: &golden::design::Design, error: &PlanError) -> String {
     format!("{}: {error}", design.name)
-}
-
-fn solution(answer: Answer) -> Solution {
-    let Answer { status, resultant, torque, mu, phi, mu_xy, standard_error, contacts, field, .. } = answer;
-    let (status, [mu_x, mu_y]) = (golden::solver::Status(status), mu_xy);
-    let records = Vec::new();
-    Solution { status, resultant, torque, standard_error, contacts, records, mu, phi, mu_x, mu_y, field }
 }

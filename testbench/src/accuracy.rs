@@ -4,8 +4,6 @@ use golden::metrics::{ErrorSummary, Outcome, field_error};
 use golden::solver::{Solution, Status};
 use serde::{Deserialize, Serialize};
 
-use crate::stream_words::Answer;
-
 /// Largest errors against the f64 solver with the same filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct SolverError {
@@ -18,7 +16,7 @@ pub struct SolverError {
 impl SolverError {
     /// Compares answers with solutions, pair by pair. A frame that the solver calls empty and the core does not has an
     /// infinite error.
-    pub fn new(answers: &[Answer], solutions: &[Solution]) -> Self {
+    pub fn new(answers: &[Solution], solutions: &[Solution]) -> Self {
         answers.iter().zip(solutions).fold(Self::default(), |worst, (answer, solution)| {
             let field = if answer.field[2].is_empty() { 0.0 } else { field_error(&solution.field, &answer.field) };
             Self {
@@ -73,8 +71,8 @@ pub struct StatusCounts {
 
 impl StatusCounts {
     /// Counts the answers.
-    pub fn new(answers: &[Answer]) -> Self {
-        Self::of(&answers.iter().map(|answer| Status(answer.status)).collect::<Vec<_>>())
+    pub fn new(answers: &[Solution]) -> Self {
+        Self::of(&answers.iter().map(|answer| answer.status).collect::<Vec<_>>())
     }
 
     /// Counts statuses.
@@ -114,17 +112,8 @@ impl StatusCounts {
     }
 }
 
-impl From<&Answer> for Outcome {
-    fn from(answer: &Answer) -> Self {
-        Self { force: answer.resultant, friction: answer.mu, direction: answer.phi }
-    }
-}
-
-/// Errors of answers or solutions against true forces, in percent.
-pub fn against_truth<'a, T: 'a>(found: &'a [T], truth: &[Outcome]) -> ErrorSummary
-where
-    Outcome: From<&'a T>,
-{
+/// Errors of answers against true forces, in percent.
+pub fn against_truth(found: &[Solution], truth: &[Outcome]) -> ErrorSummary {
     ErrorSummary::new(&truth.iter().copied().zip(found.iter().map(Outcome::from)).collect::<Vec<_>>())
 }
 
@@ -132,25 +121,19 @@ where
 mod tests {
     use super::*;
 
-    fn answer(status: u32) -> Answer {
-        Answer {
-            status,
+    fn answer(status: u32) -> Solution {
+        Solution {
             resultant: [3.0, 0.0, -6.0],
             mu: 0.5,
-            mu_xy: [0.5, 0.0],
+            mu_x: 0.5,
             field: [vec![1.0, 2.0], vec![0.0, 0.0], vec![-2.0, -4.0]],
-            ..Answer::default()
+            ..Solution::zeros(Status(status), 2)
         }
-    }
-
-    fn solution() -> Solution {
-        let Answer { resultant, field, .. } = answer(0);
-        Solution { resultant, field, mu: 0.5, ..Solution::zeros(Status(0), 2) }
     }
 
     #[test]
     fn equal_results_have_no_error() {
-        let error = SolverError::new(&[answer(0)], &[solution()]);
+        let error = SolverError::new(&[answer(0)], &[answer(0)]);
         assert_eq!(error, SolverError { resultant_max: 0.0, field_max: 0.0 });
     }
 
@@ -159,7 +142,7 @@ mod tests {
         let mut wrong = answer(0);
         wrong.resultant[1] = 0.6;
         wrong.field[0][1] = 2.4;
-        let error = SolverError::new(&[answer(0), wrong, answer(0)], &[solution(), solution(), solution()]);
+        let error = SolverError::new(&[answer(0), wrong, answer(0)], &[answer(0), answer(0), answer(0)]);
         assert!((error.resultant_max - 0.1).abs() < 1e-12, "{error:?}");
         assert!((error.field_max - 0.1).abs() < 1e-12, "{error:?}");
     }

@@ -2,8 +2,8 @@
 //! millimetres, with scales.
 
 use golden::sensor::Sensor;
+use golden::solver::Solution;
 
-use crate::stream_words::Answer;
 use crate::svg::{INK, Svg};
 
 /// Width of one picture; two or three stand side by side.
@@ -209,7 +209,7 @@ fn arrows(svg: &mut Svg, grid: &Grid, fields: &[(&[Vec<f64>; 3], &str)]) {
     svg.sized_text((right + 16.0 + scale * sample, place + 4.0), "start", INK, 11, &format!("{} N", short(sample)));
 }
 
-fn draw_forces(svg: &mut Svg, sensor: &Sensor, x: f64, answer: &Answer, truth: Option<&Truth>) {
+fn draw_forces(svg: &mut Svg, sensor: &Sensor, x: f64, answer: &Solution, truth: Option<&Truth>) {
     let grid = Grid::new(sensor, x);
     let [_, _, fz] = &answer.field;
     grid.frame(svg, "forces found: f_z as colour, f_x and f_y as arrows");
@@ -238,7 +238,7 @@ fn draw_forces(svg: &mut Svg, sensor: &Sensor, x: f64, answer: &Answer, truth: O
     }
 }
 
-fn draw_errors(svg: &mut Svg, sensor: &Sensor, x: f64, answer: &Answer, field: &[Vec<f64>; 3]) {
+fn draw_errors(svg: &mut Svg, sensor: &Sensor, x: f64, answer: &Solution, field: &[Vec<f64>; 3]) {
     let grid = Grid::new(sensor, x);
     let off = [0, 1, 2].map(|axis| {
         let pairs = answer.field[axis].iter().zip(&field[axis]);
@@ -257,7 +257,7 @@ fn draw_errors(svg: &mut Svg, sensor: &Sensor, x: f64, answer: &Answer, field: &
 }
 
 /// Stress and forces beside each other, and the errors where each taxel's true force is known.
-pub fn frame(sensor: &Sensor, stress: &[f64], answer: &Answer, truth: Option<&Truth>) -> String {
+pub fn frame(sensor: &Sensor, stress: &[f64], answer: &Solution, truth: Option<&Truth>) -> String {
     let field = truth.and_then(|truth| truth.field.as_ref());
     let width = if field.is_some() { 3.0 * WIDTH } else { 2.0 * WIDTH };
     let mut svg = Svg::new(width, height(sensor), "Stress at the taxels, and the forces found from it");
@@ -271,6 +271,8 @@ pub fn frame(sensor: &Sensor, stress: &[f64], answer: &Answer, truth: Option<&Tr
 
 #[cfg(test)]
 mod tests {
+    use golden::solver::Status;
+
     use super::*;
 
     #[test]
@@ -288,7 +290,7 @@ mod tests {
     #[test]
     fn nothing_pressed_has_a_picture_too() {
         let sensor = Sensor { columns: 3, rows: 2, pitch_mm: [4.0, 2.0], depth_mm: 3.0 };
-        let answer = Answer { field: [(); 3].map(|()| vec![0.0; 6]), ..Answer::default() };
+        let answer = Solution::zeros(Status::default(), 6);
         let truth = Truth { force: [0.0; 3], field: Some(answer.field.clone()) };
         let text = frame(&sensor, &[0.0; 6], &answer, Some(&truth));
         assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
@@ -299,9 +301,9 @@ mod tests {
     fn errors_are_what_is_found_less_what_is_true() {
         let sensor = Sensor { columns: 2, rows: 2, pitch_mm: [4.0; 2], depth_mm: 3.0 };
         let field = [vec![0.0; 4], vec![0.0; 4], vec![-2.0, 0.0, 0.0, 0.0]];
-        let mut answer = Answer { field: field.clone(), ..Answer::default() };
+        let mut answer = Solution { field: field.clone(), ..Solution::zeros(Status::default(), 4) };
         let truth = Truth { force: [0.0, 0.0, -2.0], field: Some(field) };
-        let drawn = |answer: &Answer| frame(&sensor, &[0.0; 4], answer, Some(&truth));
+        let drawn = |answer: &Solution| frame(&sensor, &[0.0; 4], answer, Some(&truth));
         assert!(drawn(&answer).contains("largest: 0 %"));
         answer.field[2][3] = 0.1;
         let text = drawn(&answer);

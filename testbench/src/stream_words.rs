@@ -1,6 +1,6 @@
 //! Frames as the words of the two streams.
 
-use golden::solver::Solution;
+use golden::solver::{Solution, Status};
 use hdl_gen::plan::streams::Streams;
 use hdl_gen::plan::words;
 
@@ -33,66 +33,25 @@ pub fn beat_name(beat: usize, columns: usize) -> String {
     format!("f_{} of taxel {taxel} ({}, {})", AXES[axis], taxel % columns, taxel / columns)
 }
 
-/// An output frame in numbers.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Answer {
-    /// Status bits.
-    pub status: u32,
-    /// Frame counter.
-    pub counter: u16,
-    /// `F_x, F_y, F_z` in N.
-    pub resultant: [f64; 3],
-    /// `T_x, T_y, T_z` in N m.
-    pub torque: [f64; 3],
-    /// Friction coefficient.
-    pub mu: f64,
-    /// Direction in rad.
-    pub phi: f64,
-    /// Components of the friction coefficient.
-    pub mu_xy: [f64; 2],
-    /// Standard error of `(F_x, F_y)` in N.
-    pub standard_error: f64,
-    /// Number of contacts.
-    pub contacts: usize,
-    /// `f_x`, `f_y`, `f_z` in N, each of m values; empty for a design that puts out resultants only.
-    pub field: [Vec<f64>; 3],
-}
-
-impl From<Solution> for Answer {
-    fn from(solution: Solution) -> Self {
-        Self {
-            status: solution.status.0,
-            counter: 0,
-            resultant: solution.resultant,
-            torque: solution.torque,
-            mu: solution.mu,
-            phi: solution.phi,
-            mu_xy: [solution.mu_x, solution.mu_y],
-            standard_error: solution.standard_error,
-            contacts: solution.contacts,
-            field: solution.field,
-        }
-    }
-}
-
 /// Reads an output frame of 16 summary beats and three beats per taxel; `None` if its length is another.
-pub fn decode(words: &[u32]) -> Option<Answer> {
+pub fn decode(words: &[u32]) -> Option<Solution> {
     let (summary, field) = words.split_first_chunk::<SUMMARY_BEATS>()?;
     let (triples, []) = field.as_chunks::<3>() else {
         return None;
     };
     let value = |word: u32| f64::from(f32::from_bits(word));
     let [head, _, fx, fy, fz, tx, ty, tz, mu, phi, mu_x, mu_y, standard_error, counters, ..] = *summary;
-    Some(Answer {
-        status: head & STATUS_MASK,
-        counter: (head >> 16) as u16,
+    Some(Solution {
+        status: Status(head & STATUS_MASK),
         resultant: [fx, fy, fz].map(value),
         torque: [tx, ty, tz].map(value),
-        mu: value(mu),
-        phi: value(phi),
-        mu_xy: [mu_x, mu_y].map(value),
         standard_error: value(standard_error),
         contacts: (counters & 0xFF) as usize,
+        records: Vec::new(),
+        mu: value(mu),
+        phi: value(phi),
+        mu_x: value(mu_x),
+        mu_y: value(mu_y),
         field: [0, 1, 2].map(|axis| triples.iter().map(|triple| value(triple[axis])).collect()),
     })
 }
@@ -116,20 +75,19 @@ mod tests {
         words.extend([1.0, 2.0, -3.0, 0.01, 0.02, 0.03, 0.5, 0.25, -0.5, 0.125, 0.0625].map(f32::to_bits));
         words.extend([0x0003_0002, 0, 0]);
         words.extend([10.0, 20.0, 30.0, 11.0, 21.0, 31.0].map(f32::to_bits));
-        let answer = decode(&words).expect("two taxels");
-        let expected = Answer {
-            status: 6,
-            counter: 5,
+        let expected = Solution {
             resultant: [1.0, 2.0, -3.0],
             torque: [0.01_f32, 0.02, 0.03].map(f64::from),
-            mu: 0.5,
-            phi: 0.25,
-            mu_xy: [-0.5, 0.125],
             standard_error: 0.0625,
             contacts: 2,
+            mu: 0.5,
+            phi: 0.25,
+            mu_x: -0.5,
+            mu_y: 0.125,
             field: [vec![10.0, 11.0], vec![20.0, 21.0], vec![30.0, 31.0]],
+            ..Solution::zeros(Status(6), 2)
         };
-        assert_eq!(answer, expected);
+        assert_eq!(decode(&words), Some(expected));
     }
 
     #[test]

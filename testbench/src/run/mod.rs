@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use golden::design::{Design, Estimator, Filter, Tension};
 use golden::output::OutputError;
-use golden::solver::{Solver, SolverError as SolveError};
+use golden::solver::{Solution, Solver, SolverError as SolveError};
 use hdl_gen::plan::Plan;
 use thiserror::Error;
 
@@ -16,7 +16,7 @@ use crate::co_simulation::{CoSimulation, CoSimulationError, planned, rtl_sources
 use crate::frame_set::FrameSet;
 use crate::registers;
 use crate::simulate::frames_to_simulate;
-use crate::stream_words::{Answer, as_received, decode, packets};
+use crate::stream_words::{as_received, decode, packets};
 use crate::verilate::{Trace, Verilate, verilator_version};
 use crate::waves;
 use golden::progress::Progress;
@@ -100,7 +100,7 @@ pub fn run_plan(
     };
 
     // Answers of another length are mismatches already; here they count as missing.
-    let answers: Vec<Answer> = verdict.simulation.answers.iter().filter_map(|words| decode(words)).collect();
+    let answers: Vec<Solution> = verdict.simulation.answers.iter().filter_map(|words| decode(words)).collect();
     let simulator = verilator_version().map_err(CoSimulationError::from)?;
     let mut report = Report::new(plan, &verdict, registers, simulator);
     report.frames_from.clone_from(&frames.origin);

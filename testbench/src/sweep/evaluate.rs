@@ -19,7 +19,7 @@ use super::{SweepError, SweepScene};
 use crate::accuracy::{SolverError, StatusCounts, against_truth};
 use crate::co_simulation::{CoSimulation, model_answers, planned};
 use crate::frame_set::FrameSet;
-use crate::stream_words::{Answer, as_received, decode, packets};
+use crate::stream_words::{as_received, decode, packets};
 
 /// Decides the pauses of the streams and the registers' random start.
 const SEED: u32 = 1;
@@ -65,7 +65,7 @@ pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Poin
         verdict.right().map_err(|fault| at(format!("{fault}; please report this design").into()))?;
         point.verified = Verified::Rtl;
     }
-    let answers: Vec<Answer> = co_simulation.expected.iter().filter_map(|words| decode(words)).collect();
+    let answers: Vec<Solution> = co_simulation.expected.iter().filter_map(|words| decode(words)).collect();
     let error = SolverError::new(&answers, &solutions);
     let bounded = |value: f64| value.is_finite().then_some(value);
     point.against_solver =
@@ -140,7 +140,7 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 ///
 /// # Errors
 /// [`SweepError::At`] if the design has no plan.
-pub fn answers(design: &Design, frames: &FrameSet) -> Result<Vec<Answer>, SweepError> {
+pub fn answers(design: &Design, frames: &FrameSet) -> Result<Vec<Solution>, SweepError> {
     let plan = planned(design).map_err(|error| SweepError::at(&design.name, error))?;
     let packets = packets(plan.streams(), &frames.clone().as_delivered(design).stress);
     Ok(model_answers(&plan, &packets).iter().filter_map(|words| decode(words)).collect())

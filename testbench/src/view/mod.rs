@@ -6,7 +6,7 @@ mod terminal;
 
 use golden::design::Design;
 use golden::sensor::Sensor;
-use golden::solver::Status;
+use golden::solver::{Solution, Status};
 use hdl_gen::model::Model;
 use hdl_gen::plan::{Plan, PlanError};
 use serde_json::{Value, json};
@@ -14,7 +14,7 @@ use thiserror::Error;
 
 use crate::field_plot::{self, Truth};
 use crate::frame_set::FrameSet;
-use crate::stream_words::{Answer, decode};
+use crate::stream_words::decode;
 use golden::progress::Progress;
 use page::Look;
 pub use range::FrameRange;
@@ -46,7 +46,7 @@ pub struct View {
     sensor: Sensor,
     /// In Pa.
     stress: Vec<f64>,
-    answer: Answer,
+    answer: Solution,
     truth: Option<Truth>,
 }
 
@@ -79,14 +79,14 @@ impl View {
 
     /// The same for machines; values have the names of the output stream, fields go in taxel order.
     fn json(&self) -> Value {
-        let Answer { status, resultant: [force_x, force_y, force_z], mu, phi, mu_xy: [mu_x, mu_y], .. } = self.answer;
+        let Solution { status, resultant: [force_x, force_y, force_z], mu, phi, mu_x, mu_y, .. } = self.answer;
         let mut json = json!({
             "design": self.design,
             "origin": self.origin,
             "frame": self.frame,
             "columns": self.sensor.columns,
-            "status": status,
-            "meaning": Status(status).to_string(),
+            "status": status.0,
+            "meaning": status.to_string(),
             "F_x": force_x,
             "F_y": force_y,
             "F_z": force_z,
@@ -144,7 +144,7 @@ pub fn frames(
             stress: design.stress_of(stress),
             truth: frames.truth_of(frame),
             // The model's answers have the length that it was made for.
-            answer: decode(&words).unwrap_or_default(),
+            answer: decode(&words).unwrap_or_else(|| Solution::zeros(Status::default(), 0)),
         }
     };
     Ok(range.map(view).collect())
@@ -154,9 +154,10 @@ pub fn frames(
 mod tests {
     use super::*;
 
-    pub(super) fn answer(forces: &[[f64; 3]]) -> Answer {
+    pub(super) fn answer(forces: &[[f64; 3]]) -> Solution {
         let field = [0, 1, 2].map(|axis| forces.iter().map(|force| force[axis]).collect());
-        Answer { resultant: [1.0, 2.0, -3.0], mu: 0.5, phi: 1.0, mu_xy: [0.3, 0.4], field, ..Answer::default() }
+        let zeros = Solution::zeros(Status::default(), 0);
+        Solution { resultant: [1.0, 2.0, -3.0], mu: 0.5, phi: 1.0, mu_x: 0.3, mu_y: 0.4, field, ..zeros }
     }
 
     #[test]

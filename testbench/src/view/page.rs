@@ -2,9 +2,7 @@
 
 use std::fmt::Write;
 
-use golden::solver::Status;
-
-use crate::stream_words::Answer;
+use golden::solver::Solution;
 
 /// Towards larger x, then a further eighth of a turn towards larger y each; y is up on the page.
 const ARROWS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘'];
@@ -30,7 +28,7 @@ pub struct Look {
 }
 
 /// The largest component of a taxel's force, in newtons.
-pub fn largest(answer: &Answer) -> f64 {
+pub fn largest(answer: &Solution) -> f64 {
     answer.field.iter().flatten().fold(0.0, |largest: f64, value| largest.max(value.abs()))
 }
 
@@ -40,7 +38,7 @@ pub fn width(columns: usize) -> usize {
 }
 
 /// The page of an answer.
-pub fn render(title: &str, answer: &Answer, columns: usize, look: Look) -> String {
+pub fn render(title: &str, answer: &Solution, columns: usize, look: Look) -> String {
     let mut text = format!("{title}\n");
     let [x, y, z] = answer.resultant;
     // Writing to a String cannot fail.
@@ -49,7 +47,7 @@ pub fn render(title: &str, answer: &Answer, columns: usize, look: Look) -> Strin
         "F = ({x:.3}, {y:.3}, {z:.3}) N   mu = {:.3}   phi = {:.1}°   {}",
         answer.mu,
         answer.phi.to_degrees(),
-        Status(answer.status)
+        answer.status
     );
     let [fx, fy, fz] = &answer.field;
     if fx.is_empty() {

@@ -191,7 +191,7 @@ fn the_field_of_every_frame_is_close_to_the_solver() {
             let stress: Vec<f64> = packet.iter().map(|&word| f64::from(f32::from_bits(word))).collect();
             let solution = solver.solve(&stress).expect("a frame of the right length");
             let answer = decode(&words).expect("a whole frame");
-            assert_eq!(answer.status, solution.status.0, "{name}, frame {index}: status");
+            assert_eq!(answer.status, solution.status, "{name}, frame {index}: status");
             let error = SolverError::new(&[answer], &[solution]);
             let most = error.field_max.max(error.resultant_max);
             assert!(most <= MOST_FIELD_ERROR, "{name}, frame {index}: {error:?}");

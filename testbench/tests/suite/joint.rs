@@ -11,7 +11,7 @@ use golden::design::{Design, Optimise, Outputs};
 use golden::kernel::Kernel;
 use golden::metrics::Outcome;
 use golden::scene::{Medium, Shape};
-use golden::solver::Solver;
+use golden::solver::{Solution, Solver};
 use hdl_gen::model::{AT_BOUND, DIRECTION_UNKNOWN, LOW_CONFIDENCE, NO_CONTACT, SATURATED};
 use hdl_gen::new_design::NewDesign;
 use hdl_gen::plan::Plan;
@@ -20,7 +20,7 @@ use rand_chacha::ChaCha8Rng;
 use testbench::accuracy::SolverError;
 use testbench::co_simulation::{model_answers, timeout};
 use testbench::stream::{Traffic, exchange};
-use testbench::stream_words::{Answer, decode};
+use testbench::stream_words::decode;
 
 const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
 const SOFTER: Medium = Medium::BondedLayer { poisson: 0.45 };
@@ -152,11 +152,11 @@ fn the_model_is_close_to_the_solver() {
             let limit = design.algorithm.max_standard_error * solution.resultant[2].abs();
             let undecided = (solution.standard_error - limit).abs() < 0.02 * limit;
             let either = if undecided { LOW_CONFIDENCE } else { 0 };
-            assert_eq!(answer.status | either, solution.status.0 | either, "{}, frame {index}: status", design.name);
+            assert_eq!(answer.status.0 | either, solution.status.0 | either, "{}, frame {index}: status", design.name);
             let apart = (answer.standard_error - solution.standard_error).abs();
             assert!(apart <= 0.02 * solution.standard_error, "{}, frame {index}: {apart} N", design.name);
-            let [x, y] = answer.mu_xy;
-            friction = friction.max((x - solution.mu_x).abs()).max((y - solution.mu_y).abs());
+            let off = [answer.mu_x - solution.mu_x, answer.mu_y - solution.mu_y];
+            friction = off.iter().fold(friction, |most, off| most.max(off.abs()));
             let error = SolverError::new(&[answer], &[solution]);
             assert!(error.field_max <= MOST_FIELD_ERROR, "{}, frame {index}: {error:?}", design.name);
             field = field.max(error.field_max);
@@ -168,7 +168,7 @@ fn the_model_is_close_to_the_solver() {
 }
 
 /// What the RTL answers to frames sent back to back, each word compared with the model's.
-fn simulated(plan: &Plan, frames: &[Truth]) -> Vec<Answer> {
+fn simulated(plan: &Plan, frames: &[Truth]) -> Vec<Solution> {
     let packets: Vec<Vec<u32>> = frames.iter().map(|truth| encode(&truth.frame)).collect();
     let mut core = built(plan).load(1).expect("loaded");
     let outcome = exchange(&mut core, &Traffic::new(&packets, timeout(plan)), |_| ()).expect("answered");
@@ -177,8 +177,8 @@ fn simulated(plan: &Plan, frames: &[Truth]) -> Vec<Answer> {
     words.iter().map(|words| decode(words).expect("a whole frame")).collect()
 }
 
-fn outcome(answer: &Answer) -> (u32, Outcome) {
-    (answer.status, Outcome { force: answer.resultant, friction: answer.mu, direction: answer.phi })
+fn outcome(answer: &Solution) -> (u32, Outcome) {
+    (answer.status.0, Outcome::from(answer))
 }
 
 /// The goals of the estimator, in RTL, cycle by cycle: the limits are those of the solver's tests.
@@ -250,19 +250,19 @@ fn frames_without_a_plain_answer_say_so() {
         frame[taxel] = value;
         answer(frame)
     };
-    assert_eq!(answer(vec![0.0; taxels]).status, NO_CONTACT);
-    assert_eq!(with(44, -step, 0.0).status, NO_CONTACT, "one step of one taxel is below the floor");
+    assert_eq!(answer(vec![0.0; taxels]).status.0, NO_CONTACT);
+    assert_eq!(with(44, -step, 0.0).status.0, NO_CONTACT, "one step of one taxel is below the floor");
     // Nothing presses, so nothing limits the friction.
     let pulled = answer(vec![500.0; taxels]);
-    assert_eq!((pulled.status, pulled.mu_xy), (DIRECTION_UNKNOWN | LOW_CONFIDENCE, [0.0, 0.0]));
+    assert_eq!((pulled.status.0, pulled.mu_x, pulled.mu_y), (DIRECTION_UNKNOWN | LOW_CONFIDENCE, 0.0, 0.0));
     let clipped = with(44, -2.0 * full_scale, 0.0);
-    assert_eq!(clipped.status & SATURATED, SATURATED);
+    assert_eq!(clipped.status.0 & SATURATED, SATURATED);
     // One taxel alone is a contact in its middle: no push.
     let alone = with(44, -0.1 * full_scale, 0.0);
-    assert_eq!(alone.status & (NO_CONTACT | DIRECTION_UNKNOWN | SATURATED), 0);
+    assert_eq!(alone.status.0 & (NO_CONTACT | DIRECTION_UNKNOWN | SATURATED), 0);
     // Tension on one side only, far more than friction explains.
     let dragged = answer((0..taxels).map(|taxel| if taxel % 10 < 5 { 3e4 } else { -3e4 }).collect());
-    assert_eq!(dragged.status & AT_BOUND, AT_BOUND, "{dragged:?}");
+    assert_eq!(dragged.status.0 & AT_BOUND, AT_BOUND, "{dragged:?}");
     // The least stress that is a contact: the grid's values are then a few steps each.
     let mut faint = design.clone();
     faint.algorithm.noise_floor_pa = 1e-3;
@@ -270,5 +270,5 @@ fn frames_without_a_plain_answer_say_so() {
     let mut frame = vec![0.0; taxels];
     frame[44] = -(faint.thresholds.contact as f64) * step;
     let answer = decode(&model_answers(&faint, &[encode(&frame)])[0]).expect("a whole frame");
-    assert!(answer.status & (NO_CONTACT | SATURATED) == 0 && answer.mu_xy.iter().all(|mu| mu.abs() <= 1.5));
+    assert!(answer.status.0 & (NO_CONTACT | SATURATED) == 0 && answer.mu_x.abs().max(answer.mu_y.abs()) <= 1.5);
 }

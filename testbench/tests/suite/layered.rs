@@ -9,9 +9,9 @@ use crate::support::frames::encode;
 use crate::support::{built, in_parallel, planned, shipped, simulate_exactly, workspace};
 use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
 use golden::scene::Scene;
-use golden::solver::Solver;
+use golden::solver::{Solution, Solver};
 use testbench::accuracy::against_truth;
-use testbench::stream_words::{Answer, as_received, decode};
+use testbench::stream_words::{as_received, decode};
 
 /// Percentage points between an error of the RTL and that of f64.
 const MOST_DIFFERENCE: f64 = 0.1;
@@ -38,7 +38,7 @@ fn errors(design: &str, scene: &str) -> Vec<[ErrorSummary; 2]> {
     let plan = planned(&design);
     let simulation =
         simulate_exactly(&plan, &built(&plan), &packets, 5).unwrap_or_else(|error| panic!("{}: {error}", design.name));
-    let answers: Vec<Answer> = simulation.answers.iter().map(|words| decode(words).expect("a whole frame")).collect();
+    let answers: Vec<Solution> = simulation.answers.iter().map(|words| decode(words).expect("a whole frame")).collect();
     let mut first = 0;
     let of = |(stress, truth): &(Vec<Vec<f64>>, Vec<Outcome>)| {
         let frames = first..first + stress.len();

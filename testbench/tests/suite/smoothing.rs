@@ -17,7 +17,7 @@ use testbench::accuracy::SolverError;
 use testbench::co_simulation::{model_answers, timeout};
 use testbench::registers::{Access, Controlled, address};
 use testbench::stream::{Mode, Pacing, Reset, Traffic, exchange};
-use testbench::stream_words::{Answer, decode};
+use testbench::stream_words::decode;
 use testbench::verilate::Built;
 
 const NOISE: f64 = 0.01;
@@ -281,7 +281,7 @@ fn the_model_averages_as_the_solver_does() {
             let force = |solution: &Solution| solution.resultant[2].abs();
             let largest = solutions.iter().map(force).fold(0.0, f64::max);
             // Where a contact and what fades of the one before cancel, a force has no scale.
-            let (answers, solutions): (Vec<Answer>, Vec<Solution>) =
+            let (answers, solutions): (Vec<Solution>, Vec<Solution>) =
                 answers.zip(solutions).filter(|(_, solution)| force(solution) > 0.02 * largest).unzip();
             assert!(2 * answers.len() > sent.len(), "{}: {} frames have a scale", plan.design.name, answers.len());
             for (n, (answer, solution)) in answers.iter().zip(&solutions).enumerate() {

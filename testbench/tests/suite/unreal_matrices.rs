@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 
 use crate::support::{built, frames, planned, shipped, simulate_exactly};
 use golden::design::PlanKind;
+use golden::solver::Solution;
 use hdl_gen::model::{AT_BOUND, DIRECTION_UNKNOWN, NO_CONTACT, NOT_FINITE, SATURATED};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::product::Vector;
@@ -12,7 +13,7 @@ use hdl_gen::plan::schedule::Schedule;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use testbench::co_simulation::model_answers;
-use testbench::stream_words::{Answer, decode};
+use testbench::stream_words::decode;
 
 /// The small design with another plan.
 fn changed(name: &str, change: impl Fn(&mut Plan)) -> Plan {
@@ -42,17 +43,17 @@ fn silence(plan: &mut Plan, condition: impl Fn(Vector) -> bool) {
 }
 
 /// Frames of noise through RTL and model, which agree; the answers that are no zeros by status.
-fn answers(plan: &Plan) -> Vec<Answer> {
+fn answers(plan: &Plan) -> Vec<Solution> {
     let mut random = ChaCha8Rng::seed_from_u64(6);
     let packets: Vec<Vec<u32>> = (0..40).map(|_| frames::noise(plan, 1.0, &mut random)).collect();
     simulate_exactly(plan, &built(plan), &packets, 3).unwrap_or_else(|error| panic!("{}: {error}", plan.design.name));
     let answers = model_answers(plan, &packets).into_iter().map(|words| decode(&words).expect("a whole frame"));
-    answers.filter(|answer| answer.status & (NO_CONTACT | NOT_FINITE) == 0).collect()
+    answers.filter(|answer| answer.status.0 & (NO_CONTACT | NOT_FINITE) == 0).collect()
 }
 
 /// Asserts that some but not all answers have the status.
-fn assert_some(answers: &[Answer], status: u32) {
-    let with = answers.iter().filter(|answer| answer.status & status != 0).count();
+fn assert_some(answers: &[Solution], status: u32) {
+    let with = answers.iter().filter(|answer| answer.status.0 & status != 0).count();
     assert!(with >= 3 && answers.len() - with >= 3, "{with} of {} with the status {status}", answers.len());
 }
 
@@ -75,7 +76,7 @@ fn assert_steep(plan: &Plan) {
     let answers = answers(plan);
     assert_some(&answers, DIRECTION_UNKNOWN);
     assert_some(&answers, AT_BOUND);
-    assert!(answers.iter().any(|answer| answer.mu_xy.contains(&-2.0)), "{} clips", plan.design.name);
+    assert!(answers.iter().any(|answer| [answer.mu_x, answer.mu_y].contains(&-2.0)), "{} clips", plan.design.name);
 }
 
 #[test]
@@ -111,7 +112,7 @@ fn no_tangential_force_gives_neither_friction_nor_angle() {
     let answers = answers(&plan);
     assert!(answers.len() >= 10);
     for answer in answers {
-        assert_ne!(answer.status & DIRECTION_UNKNOWN, 0, "a line needs tangential coefficients");
+        assert_ne!(answer.status.0 & DIRECTION_UNKNOWN, 0, "a line needs tangential coefficients");
         assert_eq!((answer.resultant[0], answer.resultant[1], answer.mu, answer.phi), (0.0, 0.0, 0.0, 0.0));
         assert!(answer.resultant[2] != 0.0, "{answer:?}");
     }
@@ -123,5 +124,5 @@ fn no_base_stress_leaves_the_friction_in_the_middle() {
     let answers = answers(&plan);
     assert!(answers.len() >= 10);
     // B is zero everywhere: its slope is nowhere negative, so the minimum is the left end.
-    assert!(answers.iter().any(|answer| answer.status & DIRECTION_UNKNOWN == 0), "some have a line");
+    assert!(answers.iter().any(|answer| answer.status.0 & DIRECTION_UNKNOWN == 0), "some have a line");
 }

@@ -7,9 +7,7 @@ use golden::estimators::line::{LEVEL, MAX_LINE_RATIO};
 use golden::parity::COMPONENTS;
 use golden::products::{Engine, ProductList};
 use golden::reduced::ReducedMatrices;
-use golden::solver::{PULLING, Solver, Status};
-
-use testbench::stream_words::Answer;
+use golden::solver::{PULLING, Solution, Solver, Status};
 
 /// Bisections of each search: as many as a float32 has bits.
 const STEPS: usize = 24;
@@ -32,19 +30,19 @@ impl<'a> Single<'a> {
     }
 
     /// The answer to one frame in Pa.
-    pub fn solve(&self, frame: &[f64]) -> Answer {
+    pub fn solve(&self, frame: &[f64]) -> Solution {
         let m = self.design.sensor.taxels();
         let full_scale = self.design.hardware.full_scale_in_frames() as f32;
         let raw: Vec<f32> = frame.iter().map(|&stress| stress as f32).collect();
         if raw.iter().any(|stress| !stress.is_finite()) {
-            return blank(Status::NOT_FINITE, m);
+            return Solution::zeros(Status::NOT_FINITE, m);
         }
         let saturated = raw.iter().any(|stress| stress.abs() >= full_scale);
         let b: Vec<f32> = raw.iter().map(|stress| stress.clamp(-full_scale, full_scale)).collect();
         let floor = self.design.algorithm.noise_floor_pa as f32;
         let stress_sum: f32 = b.iter().map(|stress| stress.abs()).sum();
         if stress_sum < floor * m as f32 {
-            return blank(Status::NO_CONTACT, m);
+            return Solution::zeros(Status::NO_CONTACT, m);
         }
         let mut of_frame = self.engine.frame();
         of_frame.stress.copy_from_slice(&b);
@@ -67,17 +65,16 @@ impl<'a> Single<'a> {
         self.engine.field([mu_x, mu_y], &mut of_frame, |p, taxel, force| field[p][taxel] = f64::from(force));
         let [x, y, z, torque @ ..] = sums.map(|[g0, g1, g2]| g0 + mu_x * g1 + mu_y * g2);
         let mu = if z == 0.0 { 0.0 } else { x.hypot(y) / z.abs() };
-        Answer {
-            status: status.0,
-            counter: 0,
+        Solution {
             resultant: [x, y, z].map(f64::from),
             torque: torque.map(f64::from),
             mu: f64::from(mu),
             phi: f64::from(y.atan2(x)),
-            mu_xy: [f64::from(mu_x), f64::from(mu_y)],
+            mu_x: f64::from(mu_x),
+            mu_y: f64::from(mu_y),
             contacts: 1,
             field,
-            ..Answer::default()
+            ..Solution::zeros(status, 0)
         }
     }
 
@@ -159,10 +156,6 @@ fn search(alpha: &[f32], beta: &[f32], allowance: f32) -> (f32, bool) {
     (left.midpoint(right), slope(-1.0) >= 0.0 || slope(1.0) < 0.0)
 }
 
-fn blank(status: Status, taxels: usize) -> Answer {
-    Answer { status: status.0, field: std::array::from_fn(|_| vec![0.0; taxels]), ..Answer::default() }
-}
-
 #[cfg(test)]
 mod tests {
     use golden::metrics::field_error;
@@ -182,7 +175,7 @@ mod tests {
             let single = Single::new(&design, &solver).expect("the reduced plan");
             for stress in FrameSet::standing(&design.sensor).expect("frames").stress.iter().step_by(5) {
                 let (one, other) = (solver.solve(stress).expect("solved"), single.solve(stress));
-                assert_eq!(one.status.0, other.status);
+                assert_eq!(one.status, other.status);
                 let error = field_error(&one.field, &other.field);
                 assert!(error > 0.0 && error < 1e-3, "{error}");
             }

@@ -8,7 +8,7 @@ use golden::metrics::{ContactErrors, field_error};
 use golden::parity::COMPONENTS;
 use golden::products::{Engine, ProductList};
 use golden::reduced::ReducedMatrices;
-use golden::solver::{Solution, Solver};
+use golden::solver::{Solution, Solver, Status};
 use hdl_gen::cores::{WIDE_COEFFICIENT_BITS, WIDE_DATA_BITS};
 use hdl_gen::plan::streams::Streams;
 use hdl_gen::plan::{Plan, PlanError};
@@ -18,7 +18,7 @@ use super::cases::Case;
 use super::float32::Single;
 use testbench::accuracy::{StatusCounts, against_truth};
 use testbench::co_simulation::model_answers;
-use testbench::stream_words::{Answer, as_received, decode, packets};
+use testbench::stream_words::{as_received, decode, packets};
 
 /// A resultant beyond this times what the stress would mean as a pressure, `sum |b|` times a taxel's area, is beyond
 /// reason.
@@ -114,14 +114,14 @@ pub fn judge(case: &Case) -> Row {
     let packets = packets(streams, &case.frames);
     let mut frames: Vec<Vec<f64>> = packets.iter().map(|packet| as_received(streams, packet)).collect();
     // Frames have the sensor's length, the only thing that the solver refuses.
-    let reference: Vec<Answer> = frames.iter().filter_map(|frame| solver.solve(frame).ok()).map(Answer::from).collect();
+    let reference: Vec<Solution> = frames.iter().filter_map(|frame| solver.solve(frame).ok()).collect();
     // What float32 and the errors see in place of dead taxels' readings is what the solver and the hardware put there.
     let dead = DeadTaxels::new(&case.design.sensor, case.design.algorithm.kernel, &case.design.input.dead);
     for frame in &mut frames {
         dead.replace(frame);
     }
     let fields = Fields::new(&case.design, &solver);
-    let judged = |answers: &[Answer]| judged(case, (&solver, fields.as_ref()), &frames, &reference, answers);
+    let judged = |answers: &[Solution]| judged(case, (&solver, fields.as_ref()), &frames, &reference, answers);
     row.f64 = Some(judged(&reference));
     let of_contacts = of_contacts(case, &frames);
     if let (Some(found), Some(errors)) = (&mut row.f64, of_contacts) {
@@ -198,8 +198,8 @@ fn judged(
     case: &Case,
     (solver, fields): (&Solver, Option<&Fields>),
     frames: &[Vec<f64>],
-    reference: &[Answer],
-    answers: &[Answer],
+    reference: &[Solution],
+    answers: &[Solution],
 ) -> Judged {
     // One contact is no answer to what each of several does.
     let truth = case.truth.as_ref().filter(|_| case.contacts.is_none());
@@ -213,8 +213,9 @@ fn judged(
         .filter(|(one, _)| !same && has_field(one))
         .map(|(one, other)| field_error(&one.field, &other.field));
     let mut at_its_friction = fields.into_iter().flat_map(|fields| {
-        let of_frame =
-            move |(answer, frame): (&Answer, &Vec<f64>)| field_error(&fields.at(frame, answer.mu_xy), &answer.field);
+        let of_frame = move |(answer, frame): (&Solution, &Vec<f64>)| {
+            field_error(&fields.at(frame, [answer.mu_x, answer.mu_y]), &answer.field)
+        };
         answered().filter(move |_| !same).map(of_frame)
     });
     let full_scale = case.design.hardware.full_scale_pa;
@@ -232,13 +233,13 @@ fn judged(
     }
 }
 
-fn has_field(answer: &Answer) -> bool {
+fn has_field(answer: &Solution) -> bool {
     answer.field.iter().flatten().any(|&force| force != 0.0)
 }
 
 /// Whether an answer is no number or beyond reason, and says nothing of it.
-fn is_silent(case: &Case, answer: &Answer, frame: &[f64]) -> bool {
-    let summary = [answer.mu, answer.phi].into_iter().chain(answer.resultant).chain(answer.mu_xy);
+fn is_silent(case: &Case, answer: &Solution, frame: &[f64]) -> bool {
+    let summary = [answer.mu, answer.phi, answer.mu_x, answer.mu_y].into_iter().chain(answer.resultant);
     let finite = summary.chain(answer.field.iter().flatten().copied()).all(f64::is_finite);
     let [x, y] = case.design.sensor.pitch_mm;
     let full_scale = case.design.hardware.full_scale_pa;
@@ -246,11 +247,11 @@ fn is_silent(case: &Case, answer: &Answer, frame: &[f64]) -> bool {
     let reason = REASON * stress * x * y * 1e-6;
     let wild = answer.resultant.iter().any(|force| force.abs() > reason);
     // A NaN has no excuse.
-    !finite || (wild && answer.status == 0)
+    !finite || (wild && answer.status == Status(0))
 }
 
 /// `|A f - b| / (|A| |f| + |b|)` in the maximum norm; b as it is after clipping.
-fn backward_error(matrices: &Matrices, answer: &Answer, frame: &[f64], full_scale: f64) -> f64 {
+fn backward_error(matrices: &Matrices, answer: &Solution, frame: &[f64], full_scale: f64) -> f64 {
     let orbits = matrices.orbits();
     let folded = answer.field.each_ref().map(|force| orbits.fold(force));
     let parts = [&matrices.c31, &matrices.c32, &matrices.c33];
@@ -299,18 +300,18 @@ mod tests {
         let cases = cases::all(false).expect("cases");
         let case = cases.iter().find(|case| case.name == "on the axes").expect("a case");
         let solver = Solver::new(&case.design).expect("a solver");
-        let good = Answer::from(solver.solve(&case.frames[0]).expect("solved"));
-        let silent = |change: fn(&mut Answer)| {
+        let good = solver.solve(&case.frames[0]).expect("solved");
+        let silent = |change: fn(&mut Solution)| {
             let mut answer = good.clone();
             change(&mut answer);
             is_silent(case, &answer, &case.frames[0])
         };
         assert!(!silent(|_| ()));
         assert!(silent(|answer| answer.resultant[0] = 1000.0));
-        assert!(!silent(|answer| (answer.resultant[0], answer.status) = (1000.0, 4)));
-        assert!(silent(|answer| (answer.field[1][3], answer.status) = (f64::NAN, 4)));
+        assert!(!silent(|answer| (answer.resultant[0], answer.status) = (1000.0, Status(4))));
+        assert!(silent(|answer| (answer.field[1][3], answer.status) = (f64::NAN, Status(4))));
         assert!(silent(|answer| answer.mu = f64::INFINITY));
-        let error = |answer: &Answer| backward_error(solver.matrices(), answer, &case.frames[0], 1e5);
+        let error = |answer: &Solution| backward_error(solver.matrices(), answer, &case.frames[0], 1e5);
         let mut wrong = good.clone();
         wrong.field[2].iter_mut().for_each(|force| *force *= 1.01);
         assert!(error(&good) < 1e-14 && error(&wrong) > 1e-4);

@@ -67,7 +67,7 @@ pub fn frame(contact: &Contact, design: &Design, solver: &Solver) -> Vec<f32> {
 }
 
 /// An output frame in numbers; without a field where the design has none.
-pub struct Answer {
+pub struct Decoded {
     pub status: u32,
     /// Forces, friction, direction, components of the friction.
     pub summary: [f64; 7],
@@ -75,12 +75,12 @@ pub struct Answer {
     pub field: [Vec<f64>; 3],
 }
 
-pub fn answer(plan: &Plan, frame: &[f32]) -> Answer {
+pub fn answer(plan: &Plan, frame: &[f32]) -> Decoded {
     let words = Model::new(plan).process(&frame.iter().map(|stress| stress.to_bits()).collect::<Vec<_>>());
     assert_eq!(words.len(), plan.words_out());
     let values: Vec<f64> = words.iter().map(|&word| f64::from(f32::from_bits(word))).collect();
     let component = |p: usize| values[SUMMARY_WORDS..].iter().skip(p).step_by(3).copied().collect();
-    Answer {
+    Decoded {
         status: words[0],
         summary: [2, 3, 4, 8, 9, 10, 11].map(|index| values[index]),
         torque: [5, 6, 7].map(|index| values[index]),

@@ -3,13 +3,12 @@
 use golden::design::{Design, Filter, PlanKind};
 use golden::metrics::Quantiles;
 use golden::scene::SceneFrame;
-use golden::status::Status;
+use golden::solver::{Solution, Status};
 use golden::table::Table;
 use hdl_gen::plan::Plan;
 
 use super::PageError;
 use crate::frame_set::FrameSet;
-use crate::stream_words::Answer;
 use crate::sweep::evaluate::answers;
 use crate::sweep::point::Calibration;
 use crate::sweep::{SweepError, frames_of_kinds};
@@ -60,14 +59,14 @@ pub fn table(designs: &[&Design], frames: u64) -> Result<Option<Table>, PageErro
 
 /// Median, 95 % and worst of the errors along the surface, in percent of the normal force; and how many of the frames
 /// say more than that they are good.
-fn judged(frames: &[SceneFrame], found: &[Answer]) -> [String; 2] {
-    let error = |(frame, answer): (&SceneFrame, &Answer)| {
+fn judged(frames: &[SceneFrame], found: &[Solution]) -> [String; 2] {
+    let error = |(frame, answer): (&SceneFrame, &Solution)| {
         let [x, y] = [0, 1].map(|axis| answer.resultant[axis] - frame.force[axis]);
         100.0 * x.hypot(y) / frame.force[2].abs()
     };
     let Quantiles { median, most, worst } = Quantiles::of(frames.iter().zip(found).map(error).collect());
     // A slipping contact has no low confidence by that.
-    let tells = |answer: &&Answer| answer.status & !Status::SLIP.0 != 0;
+    let tells = |answer: &&Solution| answer.status.0 & !Status::SLIP.0 != 0;
     let flagged = 100.0 * found.iter().filter(tells).count() as f64 / found.len() as f64;
     [format!("{median:.1} / {most:.1} / {worst:.1}"), format!("{flagged:.0}")]
 }

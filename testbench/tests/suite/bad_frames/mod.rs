@@ -5,6 +5,7 @@ mod resets;
 use std::sync::OnceLock;
 
 use golden::design::{Design, Optimise, Outputs, PlanKind};
+use golden::solver::Solution;
 use hdl_gen::model::{
     AT_BOUND, BAD_LENGTH, DIRECTION_UNKNOWN, LOW_CONFIDENCE, Model, NO_CONTACT, NO_TENSION, NOT_FINITE, SATURATED,
 };
@@ -14,7 +15,7 @@ use rand_chacha::ChaCha8Rng;
 use testbench::co_simulation::timeout;
 use testbench::compare::Comparison;
 use testbench::stream::{Mode, Outcome, Pattern, Traffic, exchange};
-use testbench::stream_words::{Answer, decode};
+use testbench::stream_words::decode;
 use testbench::verilate::Built;
 
 use crate::support::effort::share_of;
@@ -101,7 +102,7 @@ impl Subject {
     }
 }
 
-fn read(words: &[u32]) -> Answer {
+fn read(words: &[u32]) -> Solution {
     decode(words).expect("a whole frame")
 }
 
@@ -222,7 +223,7 @@ fn pressing_straight_down_has_no_direction() {
             let low = if subject.plan.thresholds.error.is_some() { LOW_CONFIDENCE } else { 0 };
             assert_eq!(words[0], DIRECTION_UNKNOWN | pulls | low, "one sign everywhere");
             let answer = read(&words);
-            assert_eq!(answer.mu_xy.map(f64::to_bits), [0, 0]);
+            assert_eq!([answer.mu_x, answer.mu_y].map(f64::to_bits), [0, 0]);
             let forces = answer.field.iter().flatten().any(|&force| force != 0.0);
             assert_eq!(forces, subject.has_field(), "the forces of pressing are there");
         }

@@ -32,8 +32,8 @@ pub(super) fn subject() -> (Plan, Built) {
     (plan, built)
 }
 
-/// What a driver is given, and the bank that it makes.
-pub(super) struct Given {
+/// Inputs of a driver, and the bank that it makes of them.
+pub(super) struct BankInputs {
     calibration: Calibration,
     /// In Pa; 0: none is given.
     pub(super) noise: f64,
@@ -45,7 +45,7 @@ pub(super) struct Given {
 }
 
 /// Calibrations one after the other.
-pub(super) fn banks(plan: &Plan) -> Vec<Given> {
+pub(super) fn banks(plan: &Plan) -> Vec<BankInputs> {
     let of = plan.calibration.as_ref().expect("in RAM");
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut thresholds = of.power_up.clone();
@@ -89,7 +89,7 @@ pub(super) fn banks(plan: &Plan) -> Vec<Given> {
             }
             let bank = of.bank(&calibration, &thresholds).expect("within bounds");
             assert!(of.takes(&bank));
-            Given { calibration, noise, dead, curve, bank }
+            BankInputs { calibration, noise, dead, curve, bank }
         })
         .collect()
 }
@@ -99,7 +99,7 @@ fn the_c_driver_loads_calibrations_and_tares() {
     let (plan, built) = subject();
     let folder = tempfile::tempdir().expect("a folder");
     let mut bytes = Vec::new();
-    for Given { calibration, noise, dead, curve, bank } in banks(&plan) {
+    for BankInputs { calibration, noise, dead, curve, bank } in banks(&plan) {
         // Count, numbers and weights of dead taxels: room for two; a count of -1 says nothing of them.
         let count = dead.as_ref().map_or(-1.0, |dead| dead.len() as f64);
         let dead = dead.unwrap_or_default();
@@ -130,8 +130,8 @@ fn the_c_driver_loads_calibrations_and_tares() {
 }
 
 /// The files of a bank, `K.csv` and, where the curve is apart, `K.curve.csv`; with any separator.
-pub(super) fn write_files(plan: &Plan, given: &Given, index: usize, folder: &Path) {
-    let Given { calibration, dead, curve, .. } = given;
+pub(super) fn write_files(plan: &Plan, inputs: &BankInputs, index: usize, folder: &Path) {
+    let BankInputs { calibration, dead, curve, .. } = inputs;
     let points = |text: &mut String| {
         for [count, pascals] in curve.iter().flat_map(|curve| &curve.points) {
             writeln!(text, "{count:?}, {pascals:?}").expect("to a string");
@@ -179,9 +179,9 @@ pub(super) fn write_files(plan: &Plan, given: &Given, index: usize, folder: &Pat
 fn the_python_driver_loads_calibrations_and_tares() {
     let (plan, built) = subject();
     let folder = tempfile::tempdir().expect("a folder");
-    for (index, given) in banks(&plan).into_iter().enumerate() {
-        write_files(&plan, &given, index, folder.path());
-        let Given { noise, bank, .. } = given;
+    for (index, inputs) in banks(&plan).into_iter().enumerate() {
+        write_files(&plan, &inputs, index, folder.path());
+        let BankInputs { noise, bank, .. } = inputs;
         let words = bank.words().into_iter().flat_map(u32::to_le_bytes);
         let bytes: Vec<u8> = noise.to_le_bytes().into_iter().chain(words).collect();
         fs::write(folder.path().join(format!("{index}.words")), bytes).expect("written");

@@ -130,12 +130,12 @@ fn the_c_driver_loads_files() {
     let place = folder.path();
     let mut list = String::new();
     let all = banks(&plan);
-    for (index, given) in all.iter().enumerate() {
-        write_files(&plan, given, index, place);
-        let words = given.bank.words().into_iter().flat_map(u32::to_le_bytes).collect::<Vec<_>>();
+    for (index, inputs) in all.iter().enumerate() {
+        write_files(&plan, inputs, index, place);
+        let words = inputs.bank.words().into_iter().flat_map(u32::to_le_bytes).collect::<Vec<_>>();
         fs::write(place.join(format!("{index}.words")), words).expect("written");
         let curve = if index == 1 || index == 4 { format!("{index}.curve.csv") } else { "-".to_owned() };
-        writeln!(list, "good {index}.csv {curve} {:?} {index}.words", given.noise).expect("to a string");
+        writeln!(list, "good {index}.csv {curve} {:?} {index}.words", inputs.noise).expect("to a string");
     }
     let bad = bad();
     for (index, (text, curve, noise, said)) in bad.iter().enumerate() {
