@@ -59,7 +59,6 @@ pub fn simulate<'py>(
         let plan = planned(design).map_err(|error| said(&error))?;
         let co_simulation = CoSimulation::new(&plan, packets(plan.streams(), &frames.rows()), seed);
         let verdict = co_simulation.run().map_err(|error| said(&error))?;
-        let faults: Vec<String> = verdict.faults().iter().map(ToString::to_string).collect();
         let report = json!({
             "bit_exact": verdict.simulation.is_exact(),
             "latency_cycles": verdict.simulation.cycles.latency,
@@ -67,7 +66,7 @@ pub fn simulate<'py>(
             "predicted_latency_cycles": verdict.predicted.latency,
             "predicted_interval_cycles": verdict.predicted.interval,
             "clock_mhz": design.hardware.clock_mhz,
-            "faults": faults,
+            "faults": verdict.faults(),
         });
         let mut forces = Forces::zeros(&design.sensor, frames.count(), 0, plan.field_words() > 0);
         let mut places = forces.pieces();

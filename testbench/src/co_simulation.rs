@@ -1,7 +1,6 @@
 //! Co-simulation of a design: its RTL is built, frames go through it, words and cycles are judged. Whoever asks whether
 //! hardware is right asks here.
 
-use std::fmt;
 use std::path::Path;
 
 use golden::design::Design;
@@ -9,10 +8,8 @@ use hdl_gen::emit::{EmitError, emit};
 use hdl_gen::model::Model;
 use hdl_gen::plan::{Plan, PlanError};
 use hdl_gen::timing::Timeline;
-use serde::Serialize;
 use thiserror::Error;
 
-use crate::compare::Mismatch;
 use crate::dut::{Dut, DutError};
 use crate::simulate::{Cycles, Job, Simulation, SimulationError, simulate};
 use crate::stream::{Outcome, Pacing, Traffic, exchange};
@@ -105,23 +102,6 @@ impl Cycles {
     }
 }
 
-/// Simulated cycles beside the predicted ones.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Timing {
-    /// The same.
-    AsPredicted,
-    /// Others.
-    Wrong,
-}
-
-impl Timing {
-    /// Judges the cycles of a frame.
-    pub fn of(plan: &Plan, simulated: Cycles) -> Self {
-        if simulated == Cycles::predicted(plan) { Self::AsPredicted } else { Self::Wrong }
-    }
-}
-
 /// A plan and frames for it.
 #[derive(Clone, Debug)]
 pub struct CoSimulation<'a> {
@@ -183,8 +163,7 @@ impl<'a> CoSimulation<'a> {
             half_period: (5e5 / self.plan.design.hardware.clock_mhz).round() as u64,
         };
         let simulation = simulate(&job, progress)?;
-        let timing = Timing::of(self.plan, simulation.cycles);
-        Ok(Verdict { simulation, timing, predicted: Cycles::predicted(self.plan) })
+        Ok(Verdict { simulation, predicted: Cycles::predicted(self.plan) })
     }
 }
 
@@ -193,21 +172,25 @@ impl<'a> CoSimulation<'a> {
 pub struct Verdict {
     /// Answers, differences and cycles.
     pub simulation: Simulation,
-    /// The cycles beside the predicted ones.
-    pub timing: Timing,
-    /// The predicted ones.
+    /// The predicted cycles.
     pub predicted: Cycles,
 }
 
 impl Verdict {
-    /// All that is wrong; nothing if every word is the model's and the cycles are right.
-    pub fn faults(&self) -> Vec<Fault> {
-        let simulation = &self.simulation;
-        let first = simulation.modes.iter().find_map(|mode| Some((mode.mode.name, mode.comparison.first.first()?)));
-        let words =
-            first.map(|(mode, first)| Fault::Words { count: simulation.mismatches(), mode, first: first.clone() });
-        let Self { timing, predicted, .. } = *self;
-        let cycles = (timing == Timing::Wrong).then_some(Fault::Cycles { simulated: simulation.cycles, predicted });
+    /// Whether the cycles are the predicted ones.
+    pub fn is_timely(&self) -> bool {
+        self.simulation.cycles == self.predicted
+    }
+
+    /// All that is wrong, in words; nothing if every word is the model's and the cycles are right.
+    pub fn faults(&self) -> Vec<String> {
+        let Self { simulation, predicted } = self;
+        let first = simulation.modes.iter().find_map(|mode| Some((mode.mode, mode.first_mismatches.first()?)));
+        let words = first.map(|(mode, first)| {
+            format!("{} words differ from the model, the first, {mode}: {first}", simulation.mismatches())
+        });
+        let cycles = (!self.is_timely())
+            .then(|| format!("latency and interval are {} cycles, predicted {predicted}", simulation.cycles));
         words.into_iter().chain(cycles).collect()
     }
 
@@ -215,61 +198,7 @@ impl Verdict {
     ///
     /// # Errors
     /// That fault.
-    pub fn right(self) -> Result<Simulation, Fault> {
+    pub fn right(self) -> Result<Simulation, String> {
         self.faults().into_iter().next().map_or(Ok(self.simulation), Err)
-    }
-}
-
-/// How RTL is wrong.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Fault {
-    /// Words are not the model's.
-    Words {
-        /// How many, over all stream modes.
-        count: u64,
-        /// The first mode that has one.
-        mode: &'static str,
-        /// Its first one.
-        first: Mismatch,
-    },
-    /// The cycles are not the predicted ones.
-    Cycles {
-        /// What was found.
-        simulated: Cycles,
-        /// What the plan says.
-        predicted: Cycles,
-    },
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Words { count, mode, first } => {
-                write!(out, "{count} words differ from the model, the first, {mode}: {first}")
-            }
-            Self::Cycles { simulated, predicted } => {
-                write!(out, "latency and interval are {simulated} cycles, predicted {predicted}")
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Timing::{AsPredicted, Wrong};
-    use super::*;
-
-    #[test]
-    fn cycles_are_exact() {
-        let text = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
-            name = \"tiny\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
-             [algorithm]\nplan = \"reduced\"\n[hardware]\nlanes = 4\n";
-        let plan = planned(&Design::from_toml(text, "tiny").expect("a design")).expect("a plan");
-        let Cycles { latency, interval } = Cycles::predicted(&plan);
-        let timings = [(0, 0), (-1, 0), (0, -1), (1, 0), (0, 1)].map(|(one, other): (i64, i64)| {
-            let (latency, interval) = (latency.strict_add_signed(one), interval.strict_add_signed(other));
-            Timing::of(&plan, Cycles { latency, interval })
-        });
-        assert_eq!(timings, [AsPredicted, Wrong, Wrong, Wrong, Wrong]);
     }
 }

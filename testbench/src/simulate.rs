@@ -7,7 +7,7 @@ use std::thread;
 use hdl_gen::timing::INTERVAL_FRAMES;
 use serde::Serialize;
 
-use crate::compare::Comparison;
+use crate::compare::{Comparison, Mismatch};
 use crate::dut::{Dut, DutError};
 use crate::stream::{Mode, Outcome, Pacing, StreamError, Traffic, exchange};
 use crate::verilate::Built;
@@ -42,15 +42,22 @@ pub struct Job<'a> {
     pub half_period: u64,
 }
 
-/// One stream mode's result.
-#[derive(Clone, Debug)]
+/// One stream mode against the model.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModeResult {
-    /// The mode.
-    pub mode: Mode,
+    /// Which ends pause.
+    pub mode: &'static str,
+    /// Whether every word is the model's.
+    pub bit_exact: bool,
+    /// Words compared.
+    pub words: u64,
+    /// Words that differ.
+    pub mismatches: u64,
     /// Cycles simulated.
     pub cycles: u64,
-    /// Against the model.
-    pub comparison: Comparison,
+    /// The first words that differ.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub first_mismatches: Vec<Mismatch>,
 }
 
 /// Latency and interval in clock cycles.
@@ -83,12 +90,12 @@ pub struct Simulation {
 impl Simulation {
     /// True if no word of any mode differs from the model.
     pub fn is_exact(&self) -> bool {
-        self.modes.iter().all(|result| result.comparison.is_exact())
+        self.modes.iter().all(|result| result.bit_exact)
     }
 
     /// Words that differ, over all modes.
     pub fn mismatches(&self) -> u64 {
-        self.modes.iter().map(|result| result.comparison.mismatches).sum()
+        self.modes.iter().map(|result| result.mismatches).sum()
     }
 }
 
@@ -156,7 +163,10 @@ fn run_mode(job: &Job<'_>, mode: Mode, progress: &impl Fn()) -> Result<(ModeResu
         .map_err(|source| SimulationError::Stream { mode: mode.name, source })?;
     let answers: Vec<Vec<u32>> = outcome.exchanges.into_iter().map(|exchange| exchange.words).collect();
     let comparison = Comparison::new(job.expected, answers.iter().map(Vec::as_slice), job.columns);
-    Ok((ModeResult { mode, cycles: outcome.cycles, comparison }, answers))
+    let bit_exact = comparison.is_exact();
+    let Comparison { words, mismatches, first: first_mismatches } = comparison;
+    let (mode, cycles) = (mode.name, outcome.cycles);
+    Ok((ModeResult { mode, bit_exact, words, mismatches, cycles, first_mismatches }, answers))
 }
 
 /// The smallest distance of beginnings at which a core that drops frames loses none, if none is lost at the predicted one:

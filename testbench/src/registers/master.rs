@@ -4,7 +4,6 @@ use std::collections::VecDeque;
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use thiserror::Error;
 
 use crate::dut::{PortInputs, PortOutputs};
 
@@ -39,25 +38,6 @@ pub struct Reply {
     pub data: u32,
     /// When the reply was taken.
     pub cycle: u64,
-}
-
-/// A rule of AXI4-Lite that the bank broke.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-pub enum PortViolation {
-    /// A reply before its request was taken, or without one.
-    #[error("cycle {0}: s_axi_ctrl replies to what was not asked")]
-    Unasked(u64),
-    /// VALID was withdrawn or the payload changed.
-    #[error("cycle {0}: a reply on s_axi_ctrl was withdrawn or changed before it was taken")]
-    Withdrawn(u64),
-    /// A response that the bank does not give.
-    #[error("cycle {cycle}: response {response} on s_axi_ctrl, expected 0 (OKAY)")]
-    Response {
-        /// When.
-        cycle: u64,
-        /// `bresp` or `rresp`.
-        response: u32,
-    },
 }
 
 /// A request under way. The address and the data of a write wait for themselves, so that either may come first.
@@ -173,22 +153,22 @@ impl Master {
     /// What the port showed while driven so.
     ///
     /// # Errors
-    /// [`PortViolation`]: the first broken rule.
-    pub fn watch(&mut self, cycle: u64, port: &PortOutputs) -> Result<(), PortViolation> {
+    /// The first broken rule of AXI4-Lite.
+    pub fn watch(&mut self, cycle: u64, port: &PortOutputs) -> Result<(), String> {
         if self.waiting_response.is_some() && port.response != self.waiting_response
             || self.waiting_data.is_some() && port.data != self.waiting_data
         {
-            return Err(PortViolation::Withdrawn(cycle));
+            return Err(format!("cycle {cycle}: a reply on s_axi_ctrl was withdrawn or changed before it was taken"));
         }
         let asked = |request: &Option<Request>, data: bool| {
             request.is_some_and(|request| request.address_taken && (request.data_taken || !data))
         };
         if port.response.is_some() && !asked(&self.write, true) || port.data.is_some() && !asked(&self.read, false) {
-            return Err(PortViolation::Unasked(cycle));
+            return Err(format!("cycle {cycle}: s_axi_ctrl replies to what was not asked"));
         }
         for response in [port.response, port.data.map(|(_, response)| response)].into_iter().flatten() {
             if response != 0 {
-                return Err(PortViolation::Response { cycle, response });
+                return Err(format!("cycle {cycle}: response {response} on s_axi_ctrl, expected 0 (OKAY)"));
             }
         }
         (self.waiting_response, self.waiting_data) = (port.response, port.data);

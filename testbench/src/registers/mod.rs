@@ -7,7 +7,7 @@ mod master;
 use std::collections::VecDeque;
 
 pub use check::{RegisterReport, check};
-pub use master::{Access, Master, PortViolation, Reply};
+pub use master::{Access, Master, Reply};
 
 use crate::dut::{Core, Dut, DutError, Inputs, Outputs};
 
@@ -157,7 +157,7 @@ impl Core for Controlled {
         };
         // Registers are not reset before the first edge, so nothing that is seen in reset counts.
         if inputs.run {
-            self.master.watch(self.cycle, &port).map_err(|error| DutError::Failed(error.to_string()))?;
+            self.master.watch(self.cycle, &port).map_err(DutError::Failed)?;
             self.interrupt = port.interrupt;
             self.interrupts += u64::from(port.interrupt);
         }

@@ -35,10 +35,7 @@ pub enum RunError {
     #[error(transparent)]
     View(#[from] OutputError),
     /// A trace was asked for in a format that cannot be written here.
-    #[error(
-        "{}: the headers of zlib and LZ4 are missing, which FST needs; run `make tools` or name a .vcd file",
-        .0.display()
-    )]
+    #[error("{}: the headers of zlib and LZ4 are missing, which FST needs; run `make tools` or name a .vcd file", .0.display())]
     NoFst(PathBuf),
 }
 

@@ -3,7 +3,6 @@
 use golden::metrics::{ERROR_NAMES, ErrorSummary};
 
 use super::report::{Published, Report};
-use crate::co_simulation::Timing;
 use crate::figures::{decimals, grouped};
 use golden::table::{Table, rule};
 
@@ -149,8 +148,7 @@ fn verdict(page: &mut String, report: &Report) {
     if let [activity] = &report.traces[..] {
         line(page, &format!("Activity of the nets in {}, for vivado/power.tcl.", activity.display()));
     }
-    match report.timing {
-        Timing::AsPredicted => {}
-        Timing::Wrong => line(page, "WRONG CYCLES: latency and interval are not the predicted ones."),
+    if report.timing == "wrong" {
+        line(page, "WRONG CYCLES: latency and interval are not the predicted ones.");
     }
 }

@@ -9,8 +9,7 @@ use hdl_gen::plan::Plan;
 use serde::Serialize;
 
 use crate::accuracy::{SolverError, StatusCounts};
-use crate::co_simulation::{Timing, Verdict};
-use crate::compare::Mismatch;
+use crate::co_simulation::Verdict;
 use crate::registers::RegisterReport;
 use crate::simulate::ModeResult;
 
@@ -69,37 +68,6 @@ pub struct Microseconds {
     pub interval: f64,
 }
 
-/// One stream mode.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ModeReport {
-    /// Which ends pause.
-    pub mode: &'static str,
-    /// Whether every word is the model's.
-    pub bit_exact: bool,
-    /// Words compared.
-    pub words: u64,
-    /// Words that differ.
-    pub mismatches: u64,
-    /// Cycles simulated.
-    pub cycles: u64,
-    /// The first words that differ.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub first_mismatches: Vec<Mismatch>,
-}
-
-impl From<&ModeResult> for ModeReport {
-    fn from(result: &ModeResult) -> Self {
-        Self {
-            mode: result.mode.name,
-            bit_exact: result.comparison.is_exact(),
-            words: result.comparison.words,
-            mismatches: result.comparison.mismatches,
-            cycles: result.cycles,
-            first_mismatches: result.comparison.first.clone(),
-        }
-    }
-}
-
 /// The result of `sptfra run`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
@@ -134,12 +102,12 @@ pub struct Report {
     pub paper_errors: Option<ErrorSummary>,
     /// Frames by status bit.
     pub status_counts: StatusCounts,
-    /// The cycles beside the predicted ones.
-    pub timing: Timing,
+    /// The cycles beside the predicted ones: `as_predicted` or `wrong`.
+    pub timing: &'static str,
     /// All that is wrong, in words; nothing if the hardware is right.
     pub faults: Vec<String>,
     /// By stream mode.
-    pub modes: Vec<ModeReport>,
+    pub modes: Vec<ModeResult>,
     /// The register bank; absent in a core without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub registers: Option<RegisterReport>,
@@ -175,13 +143,12 @@ pub struct Report {
 impl Report {
     /// What the plan and the simulation say; nothing of frames and accuracy yet.
     pub fn new(plan: &Plan, verdict: &Verdict, registers: Option<RegisterReport>, simulator: String) -> Self {
-        let Verdict { simulation, timing, predicted } = verdict;
+        let Verdict { simulation, predicted } = verdict;
         let microseconds = |cycles: u64| cycles as f64 / plan.design.hardware.clock_mhz;
         let wrong_registers = registers.iter().flat_map(|registers| &registers.wrong);
         let faults = verdict
             .faults()
-            .iter()
-            .map(ToString::to_string)
+            .into_iter()
             .chain(wrong_registers.map(|wrong| format!("register bank: {wrong}")))
             .collect();
         Self {
@@ -203,13 +170,13 @@ impl Report {
                 latency: microseconds(simulation.cycles.latency),
                 interval: microseconds(simulation.cycles.interval),
             },
-            timing: *timing,
+            timing: if verdict.is_timely() { "as_predicted" } else { "wrong" },
             faults,
             error: SolverError::default(),
             true_force_errors: None,
             paper_errors: None,
             status_counts: StatusCounts::default(),
-            modes: simulation.modes.iter().map(ModeReport::from).collect(),
+            modes: simulation.modes.clone(),
             registers,
             traces: Vec::new(),
             dsp: plan.resources.dsp,

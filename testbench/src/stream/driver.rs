@@ -3,12 +3,15 @@
 
 use std::collections::VecDeque;
 
+use super::check::show;
 use super::{Checker, Exchange, Gate, INITIAL_RESET, Outcome, Pacing, StreamError, Traffic, Violation};
 use crate::dut::{Beat, Core, Inputs};
 use hdl_gen::plan::words::{SUMMARY_WORDS, TIMESTAMP};
 
 /// Cycles watched after the last expected packet, for a beat too many.
 const QUIET: u64 = 64;
+/// The broken rule of a frame that no frame in accounts for.
+const UNEXPECTED: &str = "the core sends a frame that nothing was sent in for";
 
 /// Runs the traffic until every packet has its answer. `progress` is told the number of answers after each.
 ///
@@ -169,11 +172,11 @@ impl<'a> Driver<'a> {
         // An answer may start while its packet is still coming in, but not before.
         let sending = offer.valid || self.word > 0;
         if output.valid && self.inside.is_empty() && !sending {
-            return Err(Violation::UnexpectedFrame { cycle: self.cycle }.into());
+            return Err(self.violation(UNEXPECTED));
         }
         // It rises one cycle after the reset.
         if self.traffic.drops && !outputs.ready && self.cycle > self.released {
-            return Err(Violation::Held { cycle: self.cycle }.into());
+            return Err(self.violation("s_axis_tready is low, though the source cannot be held"));
         }
         if offer.valid && outputs.ready {
             self.taken(offer);
@@ -208,7 +211,12 @@ impl<'a> Driver<'a> {
             && if beat.last { (1..=self.width).contains(&kept) } else { kept == self.width }
             && beat.data.checked_shr(32 * kept as u32).unwrap_or(0) == 0;
         if !right {
-            return Err(Violation::Keep { cycle: self.cycle, beat }.into());
+            return Err(self.violation(format!(
+                "m_axis_tkeep is {:#x} in {}: whole words from the lowest on, all of them but in a frame's last beat, and \
+                 zeros behind",
+                beat.keep,
+                show(beat)
+            )));
         }
         self.words.extend((0..kept).map(|place| (beat.data >> (32 * place)) as u32));
         let longest = self.traffic.longest_answer;
@@ -216,14 +224,16 @@ impl<'a> Driver<'a> {
             // An answer may begin while its packet is still coming in.
             let frame = self.inside.front().map_or(self.packet, |&(packet, _)| packet);
             let excess = self.words.len() - longest;
-            return Err(Violation::NoEnd { cycle: self.cycle, frame, excess, longest }.into());
+            return Err(self.violation(format!(
+                "the answer to frame {frame} has {excess} words too many: no m_axis_tlast after {longest} words"
+            )));
         }
         if beat.last {
             let mut words = std::mem::take(&mut self.words);
             if self.traffic.drops {
                 self.skip_dropped(&words);
             }
-            let (packet, first_in) = self.inside.pop_front().ok_or(Violation::UnexpectedFrame { cycle: self.cycle })?;
+            let (packet, first_in) = self.inside.pop_front().ok_or_else(|| self.violation(UNEXPECTED))?;
             // Cores made up for tests of this driver have shorter answers, without a summary.
             let summary = words.get_mut(..SUMMARY_WORDS);
             if let Some(timestamp) = summary.and_then(|summary| summary.get_mut(TIMESTAMP)) {
@@ -240,6 +250,10 @@ impl<'a> Driver<'a> {
         while let Some(packet) = self.inside.pop_front_if(|&mut (_, first_in)| first_in < began) {
             self.outcome.dropped.push(packet);
         }
+    }
+
+    fn violation(&self, rule: impl Into<String>) -> StreamError {
+        Violation::new(self.cycle, rule).into()
     }
 
     fn timeout(&self, offer: Beat) -> StreamError {

@@ -1,25 +1,24 @@
 //! The points as CSV.
 
+use std::error::Error;
+
 use golden::metrics::ERROR_NAMES;
 
-use super::SweepError;
 use super::point::Point;
 
 /// One line a point, numbers as in the JSON: every key of a point but the counts of its matrices and statuses.
 ///
 /// # Errors
-/// [`SweepError::Io`] never happens in memory, but the writer may say so.
-pub fn csv(points: &[Point]) -> Result<String, SweepError> {
-    let failed = |source: std::io::Error| SweepError::Io { action: "write", path: "sweep.csv".into(), source };
+/// Those of the writer, of which none happens in memory.
+pub fn csv(points: &[Point]) -> Result<String, Box<dyn Error>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     // No sweep is without points.
     let names = points.first().map(|point| columns(point).into_iter().map(|(name, _)| name).collect::<Vec<_>>());
     let rows = points.iter().map(|point| columns(point).into_iter().map(|(_, value)| value).collect());
     for record in names.into_iter().chain(rows) {
-        writer.write_record(record).map_err(|error| failed(error.into()))?;
+        writer.write_record(record)?;
     }
-    let bytes = writer.into_inner().map_err(|error| failed(error.into_error()))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    Ok(String::from_utf8(writer.into_inner()?)?)
 }
 
 /// Names and values of a point's line.

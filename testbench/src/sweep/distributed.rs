@@ -14,7 +14,6 @@ use serde::Deserialize;
 use super::grid::Job;
 use super::{Sweep, SweepError, SweepScene};
 use crate::accuracy::StatusCounts;
-use crate::co_simulation::Timing;
 use crate::simulate::Cycles;
 
 /// Folder of the jobs in that of a sweep, one folder a point.
@@ -58,7 +57,7 @@ impl RunReport {
             return Err("says that the RTL is not the model".to_owned());
         }
         let simulated = Cycles { latency: self.latency_cycles, interval: self.interval_cycles };
-        let timely = Timing::of(plan, simulated) != Timing::Wrong;
+        let timely = simulated == Cycles::predicted(plan);
         let near = |found: &ErrorSummary| {
             let pairs = found.spreads().into_iter().zip(errors.spreads());
             found.frames == errors.frames && pairs.into_iter().all(|(one, other)| (one.max - other.max).abs() < SAME)
@@ -95,11 +94,7 @@ impl Sweep {
 }
 
 fn write_job(job: &Job, scene: &SweepScene, folder: &Path) -> Result<(), SweepError> {
-    fs::create_dir_all(folder).map_err(|source| SweepError::Io {
-        action: "make the folder",
-        path: folder.to_owned(),
-        source,
-    })?;
+    fs::create_dir_all(folder).map_err(SweepError::io("make the folder", folder))?;
     let frames = folder.join("frames.csv");
     write_reference(&reference_path(&frames), &scene.made)?;
     write_frames(&frames, &scene.frames.clone().as_delivered(&job.design).stress)?;

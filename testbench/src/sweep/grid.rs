@@ -34,10 +34,12 @@ pub enum FilterAxis {
 }
 
 impl FromStr for FilterAxis {
-    type Err = SweepError;
+    type Err = String;
 
-    fn from_str(word: &str) -> Result<Self, SweepError> {
-        let unknown = || SweepError::Filter(word.to_owned());
+    fn from_str(word: &str) -> Result<Self, String> {
+        let unknown = || {
+            format!("\"{word}\" is no filter of a sweep; write none, f1, f2 or f3, or one of them as f1-40 or f2-50")
+        };
         Ok(match word {
             "none" => Self::None,
             "f1" => Self::F1(None),
@@ -106,10 +108,14 @@ impl Job {
 /// standing one, and with `kinds` each gets so many frames of each kind of contact as a scene: these are added to `scenes`. Variants that more than one design has are there once.
 ///
 /// # Errors
-/// [`SweepError::OtherSensor`] for a scene of none of the designs, [`SweepError::NoPoints`] if no variant exists.
+/// [`SweepError::At`] for a scene of none of the designs, [`SweepError::NoPoints`] if no variant exists.
 pub fn jobs(designs: &[Design], axes: &Axes, scenes: &mut Vec<SweepScene>, kinds: u64) -> Result<Vec<Job>, SweepError> {
     if let Some(foreign) = scenes.iter().find(|scene| designs.iter().all(|design| design.sensor != scene.sensor)) {
-        return Err(SweepError::OtherSensor(foreign.frames.origin.clone().into()));
+        return Err(SweepError::at(
+            format!("scene {}", foreign.frames.origin),
+            "its [sensor] is that of none of the designs; add a design with the same columns, rows, pitch_mm and \
+             depth_mm, or leave the scene out",
+        ));
     }
     let mut seen = BTreeSet::new();
     let mut jobs = Vec::new();

@@ -38,15 +38,6 @@ pub enum SweepError {
     /// The standing scene of a sensor cannot be computed.
     #[error(transparent)]
     StandingScene(#[from] SceneError),
-    /// A scene is that of no design.
-    #[error(
-        "scene {}: its [sensor] is that of none of the designs; add a design with the same columns, rows, pitch_mm and \
-         depth_mm, or leave the scene out", .0.display()
-    )]
-    OtherSensor(PathBuf),
-    /// A word that names no filter of a sweep.
-    #[error("\"{0}\" is no filter of a sweep; write none, f1, f2 or f3, or one of them as f1-40 or f2-50")]
-    Filter(String),
     /// There is nothing to compute.
     #[error(
         "no point is left: no combination of these plans, filters, lanes and estimators exists (the grid search needs \
@@ -80,6 +71,12 @@ pub enum SweepError {
 }
 
 impl SweepError {
+    /// An error of a file or folder.
+    pub fn io(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Io { action, path, source }
+    }
+
     fn at(label: impl Into<String>, source: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         Self::At { label: label.into(), source: source.into() }
     }

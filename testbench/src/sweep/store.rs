@@ -24,11 +24,7 @@ impl Store {
     /// [`SweepError::Io`] if it cannot be made.
     pub fn open(folder: &Path) -> Result<Self, SweepError> {
         let folder = folder.join(POINTS);
-        fs::create_dir_all(&folder).map_err(|source| SweepError::Io {
-            action: "make the folder",
-            path: folder.clone(),
-            source,
-        })?;
+        fs::create_dir_all(&folder).map_err(SweepError::io("make the folder", &folder))?;
         Ok(Self { folder })
     }
 
@@ -60,11 +56,7 @@ impl Store {
     /// [`SweepError::Io`] and [`SweepError::At`] with the file.
     pub fn get(&self, key: &str) -> Result<Point, SweepError> {
         let path = self.path(key);
-        let bytes = fs::read(&path).map_err(|source| SweepError::Io {
-            action: "read the point",
-            path: path.clone(),
-            source,
-        })?;
+        let bytes = fs::read(&path).map_err(SweepError::io("read the point", &path))?;
         serde_json::from_slice(&bytes).map_err(|error| SweepError::at(path.display().to_string(), error))
     }
 }

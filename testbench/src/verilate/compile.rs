@@ -315,15 +315,16 @@ pub fn cxx_optimisation() -> Result<Vec<&'static str>, BuildError> {
 }
 
 /// What a program says of its version, if it runs; `remedy` is for a user whose program does not.
-pub fn version(mut program: Command, tool: &'static str, remedy: &'static str) -> Result<String, BuildError> {
+pub fn version(mut program: Command, tool: &str, remedy: &str) -> Result<String, BuildError> {
     program.arg("--version");
     let path = PathBuf::from(program.get_program());
-    said(program)?.map_err(|output| BuildError::Version { tool, path, remedy, output })
+    said(program)?
+        .map_err(|output| BuildError::Failed(format!("{tool} ({}) does not run: {output}\n{remedy}", path.display())))
 }
 
 /// Runs a command to its end; its standard output.
-pub fn output(command: Command, step: &'static str, top: &str) -> Result<String, BuildError> {
-    said(command)?.map_err(|output| BuildError::Step { step, top: top.to_owned(), output })
+pub fn output(command: Command, step: &str, top: &str) -> Result<String, BuildError> {
+    said(command)?.map_err(|output| BuildError::Failed(format!("{step} failed on `{top}`:\n{output}")))
 }
 
 /// A command's standard output if it succeeded, all it said if not.

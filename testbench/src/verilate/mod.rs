@@ -97,28 +97,9 @@ pub enum BuildError {
     /// There is no Verilog file.
     #[error("design `{0}` has no Verilog file in {RTL_FOLDER}")]
     NoVerilog(String),
-    /// A tool rejected its input.
-    #[error("{step} failed on `{top}`:\n{output}")]
-    Step {
-        /// Which tool.
-        step: &'static str,
-        /// The design's top module.
-        top: String,
-        /// What the tool said.
-        output: String,
-    },
-    /// A tool does not even say its version.
-    #[error("{tool} ({}) does not run: {output}\n{remedy}", .path.display())]
-    Version {
-        /// Which tool.
-        tool: &'static str,
-        /// Its program.
-        path: PathBuf,
-        /// What to do.
-        remedy: &'static str,
-        /// What the tool said.
-        output: String,
-    },
+    /// A tool does not run, or rejected its input.
+    #[error("{0}")]
+    Failed(String),
     /// A file or folder could not be used.
     #[error("cannot {action} {}: {source}", .path.display())]
     Io {

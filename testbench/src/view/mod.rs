@@ -4,13 +4,14 @@ mod page;
 mod range;
 mod terminal;
 
+use std::error::Error;
+
 use golden::design::Design;
 use golden::sensor::Sensor;
 use golden::solver::{Solution, Status};
 use hdl_gen::model::Model;
-use hdl_gen::plan::{Plan, PlanError};
+use hdl_gen::plan::Plan;
 use serde_json::{Value, json};
-use thiserror::Error;
 
 use crate::field_plot::{self, Truth};
 use crate::frame_set::FrameSet;
@@ -18,25 +19,7 @@ use crate::stream_words::decode;
 use golden::progress::Progress;
 use page::Look;
 pub use range::FrameRange;
-pub use terminal::{Rate, RateError, play};
-
-/// Why there is nothing to see.
-#[derive(Debug, Error)]
-pub enum ViewError {
-    /// The design cannot be planned.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// There is no such frame.
-    #[error("--frame {frame}: {origin} has {count} frames; choose 0 to {}", .count.saturating_sub(1))]
-    NoFrame {
-        /// The one asked for.
-        frame: usize,
-        /// How many there are.
-        count: usize,
-        /// Where they are.
-        origin: String,
-    },
-}
+pub use terminal::{Rate, play};
 
 /// A frame with what the hardware answers to it.
 pub struct View {
@@ -119,16 +102,18 @@ pub fn json(views: &[View]) -> Result<String, serde_json::Error> {
 /// Frames as the hardware answers them.
 ///
 /// # Errors
-/// [`ViewError`] if the design has no plan or a frame does not exist.
+/// What is wrong, if the design has no plan or a frame does not exist.
 pub fn frames(
     design: &Design,
     frames: &FrameSet,
     range: FrameRange,
     progress: &Progress,
-) -> Result<Vec<View>, ViewError> {
+) -> Result<Vec<View>, Box<dyn Error>> {
     let count = frames.stress.len();
-    let range =
-        range.within(count).map_err(|frame| ViewError::NoFrame { frame, count, origin: frames.origin.clone() })?;
+    let range = range.within(count).map_err(|frame| {
+        let (origin, last) = (&frames.origin, count.saturating_sub(1));
+        format!("--frame {frame}: {origin} has {count} frames; choose 0 to {last}")
+    })?;
     progress.stage("planning");
     let plan = Plan::new(design)?;
     progress.stage("computing the forces");

@@ -3,8 +3,6 @@
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-use thiserror::Error;
-
 /// One frame, some in a row, or all: `4`, `4-9`, `all`. The first is 0, both ends are meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameRange {
@@ -14,22 +12,20 @@ pub enum FrameRange {
     All,
 }
 
-/// What is not a range of frames.
-#[derive(Debug, Error, PartialEq, Eq)]
-#[error("write a frame as 4, some in a row as 4-9, or all; the first frame is 0")]
-pub struct RangeError;
+/// What to write where a text is not a range.
+const USAGE: &str = "write a frame as 4, some in a row as 4-9, or all; the first frame is 0";
 
 impl FromStr for FrameRange {
-    type Err = RangeError;
+    type Err = &'static str;
 
-    fn from_str(text: &str) -> Result<Self, RangeError> {
+    fn from_str(text: &str) -> Result<Self, &'static str> {
         if text == "all" {
             return Ok(Self::All);
         }
-        let number = |text: &str| text.parse().map_err(|_| RangeError);
+        let number = |text: &str| text.parse().map_err(|_| USAGE);
         let (first, last) = text.split_once('-').unwrap_or((text, text));
         let (first, last) = (number(first)?, number(last)?);
-        if first <= last { Ok(Self::Some(first, last)) } else { Err(RangeError) }
+        if first <= last { Ok(Self::Some(first, last)) } else { Err(USAGE) }
     }
 }
 
@@ -58,7 +54,7 @@ mod tests {
         assert_eq!(within("9", 5), Ok(Err(9)));
         assert_eq!(within("all", 0), Ok(Err(0)));
         for wrong in ["", "-", "3-", "4-3", "4..9", "-1", "every"] {
-            assert_eq!(within(wrong, 5), Err(RangeError), "{wrong}");
+            assert_eq!(within(wrong, 5), Err(USAGE), "{wrong}");
         }
     }
 }

@@ -4,8 +4,6 @@ use std::io::{self, IsTerminal, Write};
 use std::str::FromStr;
 use std::time::Duration;
 
-use thiserror::Error;
-
 use super::View;
 
 /// Clears the screen; begins in its corner; and after a page, clears what an earlier one left below.
@@ -36,17 +34,15 @@ pub fn columns() -> Option<usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate(Duration);
 
-/// What is not a rate.
-#[derive(Debug, Error)]
-#[error("the rate is from 0.1 to 1000 frames a second")]
-pub struct RateError;
+/// What to write where a text is not a rate.
+const USAGE: &str = "the rate is from 0.1 to 1000 frames a second";
 
 impl FromStr for Rate {
-    type Err = RateError;
+    type Err = &'static str;
 
-    fn from_str(text: &str) -> Result<Self, RateError> {
-        let hertz: f64 = text.parse().map_err(|_| RateError)?;
-        if (0.1..=1000.0).contains(&hertz) { Ok(Self(Duration::from_secs_f64(1.0 / hertz))) } else { Err(RateError) }
+    fn from_str(text: &str) -> Result<Self, &'static str> {
+        let hertz: f64 = text.parse().map_err(|_| USAGE)?;
+        if (0.1..=1000.0).contains(&hertz) { Ok(Self(Duration::from_secs_f64(1.0 / hertz))) } else { Err(USAGE) }
     }
 }
 

@@ -45,7 +45,7 @@ fn a_right_core_is_exact_in_all_modes() {
     let simulation = simulate(&job, &count).expect("runs");
     assert!(simulation.is_exact());
     assert_eq!(simulation.modes.len(), 4);
-    assert!(simulation.modes.iter().all(|result| result.comparison.words == 40));
+    assert!(simulation.modes.iter().all(|result| result.words == 40));
     assert_eq!(simulation.answers, expected);
     let cycles = 3 + DELAY + 1 + 4;
     assert_eq!((simulation.cycles.latency, simulation.cycles.interval), (cycles, cycles));
@@ -63,7 +63,7 @@ fn a_wrong_word_is_counted_in_every_mode_and_named() {
     let job = job(&built, &packets, &expected);
     let simulation = simulate(&job, &|| ()).expect("runs");
     assert_eq!((simulation.is_exact(), simulation.mismatches()), (false, 4));
-    let mismatch = &simulation.modes[3].comparison.first[0];
+    let mismatch = &simulation.modes[3].first_mismatches[0];
     assert_eq!((mismatch.frame, mismatch.beat, mismatch.name.as_str()), (4, 2, "F_x"));
 }
 

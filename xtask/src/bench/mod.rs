@@ -18,7 +18,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use golden::progress::Progress;
-use testbench::co_simulation::{CoSimulationError, Fault};
+use testbench::co_simulation::CoSimulationError;
 
 use cells::Cells;
 use cycles::Point;
@@ -43,7 +43,7 @@ pub enum BenchError {
         /// Which.
         design: String,
         /// What is wrong.
-        fault: Fault,
+        fault: String,
     },
     /// A frame cannot be solved.
     #[error(transparent)]

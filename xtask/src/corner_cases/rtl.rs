@@ -5,7 +5,7 @@ use hdl_gen::plan::Plan;
 
 use super::cases::Case;
 use golden::progress::Progress;
-use testbench::co_simulation::{CoSimulation, CoSimulationError, Timing, Verdict};
+use testbench::co_simulation::{CoSimulation, CoSimulationError};
 use testbench::stream_words::packets;
 
 /// Decides the pauses of the streams and the registers' random start.
@@ -42,7 +42,8 @@ pub fn check(cases: &[Case], progress: &Progress) -> Result<Vec<Option<bool>>, C
 fn of_design(plan: &Plan, cases: &[&Case]) -> Result<Vec<bool>, CoSimulationError> {
     let frames: Vec<Vec<f64>> = cases.iter().flat_map(|case| &case.frames).cloned().collect();
     let run = CoSimulation::new(plan, packets(plan.streams(), &frames), SEED);
-    let Verdict { simulation, timing, .. } = run.run()?;
+    let verdict = run.run()?;
+    let simulation = &verdict.simulation;
     let mut first = 0;
     let free: Vec<bool> = cases
         .iter()
@@ -54,5 +55,5 @@ fn of_design(plan: &Plan, cases: &[&Case]) -> Result<Vec<bool>, CoSimulationErro
         .collect();
     // A difference that only another mode has is not known by case: it counts against all of them.
     let others = simulation.is_exact() || !free.iter().all(|&exact| exact);
-    Ok(free.into_iter().map(|exact| exact && others && timing != Timing::Wrong).collect())
+    Ok(free.into_iter().map(|exact| exact && others && verdict.is_timely()).collect())
 }

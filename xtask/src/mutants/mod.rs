@@ -21,7 +21,7 @@ pub use sites::{Kind, Mutation, all};
 
 use crate::stress::{BATCH, run_batch};
 use golden::progress::Progress;
-use testbench::co_simulation::{CoSimulation, CoSimulationError, planned, rtl_sources};
+use testbench::co_simulation::{CoSimulation, CoSimulationError, Verdict, planned, rtl_sources};
 use testbench::frame_set::FrameSet;
 use testbench::stream_words::packets;
 use testbench::verilate::{BuildError, Built, RtlSources, Verilate, translation};
@@ -254,7 +254,7 @@ impl<'a> Ordeal<'a> {
     fn complaint(&self, sources: &RtlSources) -> Result<Option<String>, BuildError> {
         let built = Verilate::new(self.cache.path()).build(sources)?;
         let judged = self.simulation.simulate(&built, None, &|| ()).map_err(|error| error.to_string());
-        let passed = judged.and_then(|verdict| verdict.right().map_err(|fault| fault.to_string()));
+        let passed = judged.and_then(Verdict::right);
         let stressed = passed.and_then(|_| (0..STRESS_BATCHES).try_for_each(|batch| self.stress(&built, batch)));
         Ok(stressed.err())
     }
