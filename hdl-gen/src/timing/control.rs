@@ -58,8 +58,9 @@ fn smallest_spacing(durations: &Durations, interval: u64) -> u64 {
 }
 
 /// The registers, as they stand in the current cycle. Times are cycles in which something happens or is first seen.
-struct Control<'a> {
-    of: &'a Durations,
+#[derive(Default)]
+struct Control {
+    of: Durations,
     now: u64,
     // Bz and CeAn
     next_open: u64,
@@ -88,7 +89,8 @@ struct Control<'a> {
     fields_held: u64,
     // Op
     sums_there: VecDeque<u64>,
-    line: Line,
+    /// Where the line is, and since when.
+    line: (Line, u64),
     u_there: VecDeque<u64>,
     stages: Vec<StageState>,
     summary_busy: bool,
@@ -120,11 +122,12 @@ struct Arriving {
     over: bool,
 }
 
-/// Where the line is.
+#[derive(Clone, Copy, Default)]
 enum Line {
-    Idle { from: u64 },
-    Waits { from: u64 },
-    There { from: u64 },
+    #[default]
+    Idle,
+    Waits,
+    There,
 }
 
 #[derive(Clone, Copy)]
@@ -135,40 +138,22 @@ enum Change {
     SummaryFree,
 }
 
-impl<'a> Control<'a> {
-    fn new(of: &'a Durations) -> Self {
+/// Whether the first of what is due at these times is there.
+fn is_there(times: &VecDeque<u64>, now: u64) -> bool {
+    times.front().is_some_and(|&cycle| cycle <= now)
+}
+
+impl Control {
+    fn new(of: &Durations) -> Self {
+        // In cycle 1 the first beat has left the skid buffer.
+        let first_beat = 1 + of.unpacking;
         Self {
-            of,
-            now: 0,
-            // In cycle 1 the first beat has left the skid buffer.
-            next_open: 1 + of.unpacking,
-            beat_there: 1 + of.unpacking,
+            next_open: first_beat,
+            beat_there: first_beat,
             idle_since: Some(0),
-            stress_buffers: 0,
-            arrivals: VecDeque::new(),
-            in_fifo: 0,
-            arriving: VecDeque::new(),
-            writes: BTreeSet::new(),
-            cean_idle: 0,
-            directions: VecDeque::new(),
-            frames_ready: VecDeque::new(),
-            lanes_free: 0,
-            u_held: 0,
-            residual_due: false,
-            residuals_there: VecDeque::new(),
-            frames_held: 0,
-            fields_held: 0,
-            sums_there: VecDeque::new(),
-            line: Line::Idle { from: 0 },
-            u_there: VecDeque::new(),
             stages: vec![StageState::default(); of.stages.len()],
-            summary_busy: false,
-            summary_there: None,
-            friction_known: None,
-            field_there: VecDeque::new(),
-            output_idle: 0,
-            pending: Vec::new(),
-            ends: Vec::new(),
+            of: of.clone(),
+            ..Self::default()
         }
     }
 
@@ -214,11 +199,7 @@ impl<'a> Control<'a> {
         let since = |time: u64| if time >= FOREVER { FOREVER } else { time.saturating_sub(past) };
         let counts = [self.stress_buffers, self.u_held, self.frames_held, self.fields_held, self.in_fifo as u64];
         let flags = [self.idle_since.is_some(), self.residual_due, self.summary_busy].map(u64::from);
-        let line = match self.line {
-            Line::Idle { from } => [0, since(from)],
-            Line::Waits { from } => [1, since(from)],
-            Line::There { from } => [2, since(from)],
-        };
+        let line = [self.line.0 as u64, since(self.line.1)];
         let times = [self.next_open, self.beat_there, self.cean_idle, self.lanes_free, self.output_idle];
         let known = [self.summary_there, self.friction_known].map(|time| time.map_or(FOREVER, since));
         let mut state = [&counts[..], &flags, &line, &times.map(since), &known].concat();
@@ -340,7 +321,7 @@ impl<'a> Control<'a> {
         if self.now < self.lanes_free {
             return;
         }
-        let there = |times: &VecDeque<u64>| times.front().is_some_and(|&cycle| cycle <= self.now);
+        let there = |times| is_there(times, self.now);
         let friction = self.friction_known.is_some_and(|cycle| cycle <= self.now);
         let may_field = there(&self.residuals_there) && friction && self.fields_held < BUFFERS;
         let may_residual = self.residual_due && self.residuals_there.len() < self.of.residuals;
@@ -392,15 +373,18 @@ impl<'a> Control<'a> {
     }
 
     fn find_line(&mut self, latency: u64) {
-        let there = |times: &VecDeque<u64>, now: u64| times.front().is_some_and(|&cycle| cycle <= now);
-        match self.line {
-            Line::Idle { from } if from <= self.now && there(&self.sums_there, self.now) => {
+        let (line, from) = self.line;
+        if from > self.now {
+            return;
+        }
+        match line {
+            Line::Idle if is_there(&self.sums_there, self.now) => {
                 self.sums_there.pop_front();
-                self.line = Line::Waits { from: self.now + 1 };
+                self.line = (Line::Waits, self.now + 1);
             }
-            Line::Waits { from } if from <= self.now && there(&self.directions, self.now) => {
+            Line::Waits if is_there(&self.directions, self.now) => {
                 self.directions.pop_front();
-                self.line = Line::There { from: self.now + latency };
+                self.line = (Line::There, self.now + latency);
             }
             _ => {}
         }
@@ -425,15 +409,14 @@ impl<'a> Control<'a> {
         }
         // Without a line a register starts the search, a cycle after all is there.
         let seen = if self.of.line.is_some() { now } else { now.saturating_sub(1) };
-        let there = |times: &VecDeque<u64>| times.front().is_some_and(|&cycle| cycle <= seen);
         let line = match self.line {
-            _ if self.of.line.is_none() => there(&self.sums_there) && there(&self.directions),
-            Line::There { from } => from <= now,
+            _ if self.of.line.is_none() => is_there(&self.sums_there, seen) && is_there(&self.directions, seen),
+            (Line::There, from) => from <= now,
             _ => false,
         };
-        if line && there(&self.u_there) && may_begin(&self.stages[0]) {
+        if line && is_there(&self.u_there, seen) && may_begin(&self.stages[0]) {
             self.u_there.pop_front();
-            self.line = Line::Idle { from: self.now + 1 };
+            self.line = (Line::Idle, now + 1);
             if self.of.line.is_none() {
                 self.sums_there.pop_front();
                 self.directions.pop_front();
@@ -452,7 +435,7 @@ impl<'a> Control<'a> {
 
     fn send(&mut self) {
         let summary = self.summary_there.is_some_and(|cycle| cycle <= self.now);
-        let field = !self.of.field || self.field_there.front().is_some_and(|&cycle| cycle <= self.now);
+        let field = !self.of.field || is_there(&self.field_there, self.now);
         if !summary || !field || self.output_idle > self.now {
             return;
         }

@@ -1,7 +1,7 @@
 //! What a design's blocks take, as far as it does not depend on the frames under way.
 
 /// Durations in cycles, and how many frames have a buffer.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 #[allow(clippy::struct_excessive_bools, reason = "each is a question that the cycle model asks")]
 pub struct Durations {
     /// Whether frames that find no room are dropped.
@@ -40,7 +40,7 @@ pub struct Durations {
 }
 
 /// When what a frame brings is there, in cycles after its first beat enters Bz, streams never waiting.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Arrival {
     /// Its last beat has entered Bz.
     pub taken: u64,
