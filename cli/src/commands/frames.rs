@@ -10,7 +10,7 @@ use golden::matrices::Matrices;
 use golden::progress::Progress;
 use testbench::frame_set::FrameSet;
 
-use super::recording::LayoutArguments;
+use super::recording::{LayoutArguments, warn};
 
 #[derive(clap::Args)]
 pub struct FrameArguments {
@@ -37,9 +37,7 @@ impl FrameArguments {
                 eprintln!("note: {remark}");
             }
             // A design without matrices is refused later, with the reason.
-            for finding in check(design, &frames.stress, Matrices::of(design).ok().as_ref()) {
-                eprintln!("warning: {finding}");
-            }
+            warn(&check(design, &frames.stress, Matrices::of(design).ok().as_ref()));
             return Ok(frames);
         }
         if self.layout.given() {

@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use golden::design::Design;
+use golden::numbers::counted;
 use golden::progress::Progress;
 use hdl_gen::emit::boards::Board;
 use hdl_gen::emit::{Options, Prefix, emit_for};
@@ -91,7 +92,7 @@ pub fn run(args: &Args) -> message::Result {
          vivado -mode batch -source {shown}/vivado/synth.tcl synthesizes\n",
         files.len(),
         plan.taxels(),
-        super::inspect::count(plan.design.hardware.lanes, "lane"),
+        counted(plan.design.hardware.lanes, "lane"),
         timeline.latency_cycles,
         timeline.interval_cycles,
         plan.resources.dsp,

@@ -1,10 +1,10 @@
 //! `sptfra inspect`: a design's figures before anything is written.
 
 use std::error::Error;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use golden::design::{Algorithm, Design, Overrun, PlanKind};
+use golden::numbers::counted;
 use golden::progress::Progress;
 use golden::table::Table;
 use hdl_gen::emit::products;
@@ -16,7 +16,7 @@ use hdl_gen::plan::luts::logic;
 use hdl_gen::plan::savings::savings;
 
 use crate::arguments::{Target, design_file};
-use crate::message;
+use crate::message::{self, say};
 
 /// Shows a design's geometry, nonzeros, cycles, memories and multipliers.
 #[derive(clap::Args)]
@@ -43,7 +43,7 @@ const MATRICES_PER_LINE: usize = 7;
 pub fn run(args: &Args) -> message::Result {
     let Args { design: path, json, target } = args;
     let plan = planned(&Design::load(path)?, path, target, &Progress::new())?;
-    Ok(report(&plan, *json)?.into())
+    Ok(if *json { serde_json::to_string_pretty(&figures(&plan))? + "\n" } else { text_report(&plan) }.into())
 }
 
 /// The plan of the design of file `path`.
@@ -58,58 +58,57 @@ pub(super) fn planned(
     plan.map_err(|error| format!("{}: {error}", path.display()).into())
 }
 
-fn report(plan: &Plan, as_json: bool) -> Result<String, Box<dyn Error>> {
-    if as_json { json_report(plan) } else { Ok(text_report(plan)?) }
-}
-
-fn json_report(plan: &Plan) -> Result<String, Box<dyn Error>> {
-    Ok(serde_json::to_string_pretty(&figures(plan))? + "\n")
-}
-
-fn text_report(plan: &Plan) -> Result<String, std::fmt::Error> {
+fn text_report(plan: &Plan) -> String {
     let mut text = String::new();
-    writeln!(text, "{}", plan.design.name)?;
-    sensor(&mut text, plan)?;
-    matrices(&mut text, plan)?;
-    reductions(&mut text, plan)?;
-    work(&mut text, plan)?;
-    speed(&mut text, plan)?;
+    say!(text, "{}", plan.design.name);
+    sensor(&mut text, plan);
+    matrices(&mut text, plan);
+    reductions(&mut text, plan);
+    work(&mut text, plan);
+    speed(&mut text, plan);
     text += &plan.estimator.block().report(&plan.design);
-    resources(&mut text, plan)?;
-    energy(&mut text, plan)?;
-    numbers(&mut text, plan)?;
-    Ok(text)
+    resources(&mut text, plan);
+    energy(&mut text, plan);
+    numbers(&mut text, plan);
+    text
 }
 
-fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
+/// Adds a table, behind an empty line.
+fn append(text: &mut String, table: &Table) {
+    *text += "\n";
+    *text += &table.text(0, 0);
+}
+
+fn sensor(out: &mut String, plan: &Plan) {
     let sensor = &plan.design.sensor;
     let [x, y] = sensor.pitch_mm;
-    writeln!(out, "\nSensor")?;
-    writeln!(
+    say!(out, "\nSensor");
+    say!(
         out,
         "  geometry     {} x {} = {} taxels, pitch {x} x {y} mm, depth {} mm",
         sensor.columns,
         sensor.rows,
         plan.taxels(),
         sensor.depth_mm
-    )?;
+    );
     let Algorithm { plan: kind, estimator, outputs, .. } = &plan.design.algorithm;
-    writeln!(out, "  design       plan {kind}, estimator {estimator}, outputs {outputs}")?;
+    say!(out, "  design       plan {kind}, estimator {estimator}, outputs {outputs}");
     if let Some(contacts) = contacts(plan) {
-        writeln!(out, "  contacts     {contacts}")?;
+        say!(out, "  contacts     {contacts}");
     }
-    writeln!(
+    say!(
         out,
         "  streams      {} bits a beat, samples {}",
-        plan.design.hardware.stream_bits, plan.design.hardware.samples
-    )?;
+        plan.design.hardware.stream_bits,
+        plan.design.hardware.samples
+    );
     if let Some(curve) = &plan.design.input.curve
         && let Some(first) = curve.exact_from()
     {
         // Three digits of a small one, whole counts of others.
         let digits = usize::from(first < 100.0);
         let last = curve.largest_count();
-        writeln!(out, "  curve        power law, exact from {first:.digits$} counts on, saturated from {last:.0} on")?;
+        say!(out, "  curve        power law, exact from {first:.digits$} counts on, saturated from {last:.0} on");
     }
     let condition = &plan.condition;
     let thin = plan.design.thin_layer();
@@ -123,19 +122,18 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
     } else {
         "well conditioned".to_owned()
     };
-    writeln!(out, "  condition    C33 {}, A A^T {}: {verdict}", short(condition.c33), short(condition.aat))?;
+    say!(out, "  condition    C33 {}, A A^T {}: {verdict}", short(condition.c33), short(condition.aat));
     if let Some(expected) = plan.design.expected_error() {
         let expected = expected.to_string().replacen(" (median", &format!("\n{INDENT}(median"), 1);
-        writeln!(out, "  error        {expected}")?;
+        say!(out, "  error        {expected}");
     }
-    writeln!(out, "  kernel       {}", plan.estimator.block().kernel_advice(&plan.design, INDENT))?;
+    say!(out, "  kernel       {}", plan.estimator.block().kernel_advice(&plan.design, INDENT));
     if let Some((layer, remedy)) = thin.as_deref().and_then(|thin| thin.split_once(": ")) {
-        writeln!(out, "  thin         {layer}:\n{INDENT}{remedy}")?;
+        say!(out, "  thin         {layer}:\n{INDENT}{remedy}");
     }
-    Ok(())
 }
 
-fn matrices(out: &mut String, plan: &Plan) -> std::fmt::Result {
+fn matrices(out: &mut String, plan: &Plan) {
     let all = plan.taxels() * plan.taxels();
     let kept: usize = plan.nnz.0.iter().map(|&(_, count)| count).sum();
     let share = 100.0 * kept as f64 / (all * plan.nnz.0.len()) as f64;
@@ -144,28 +142,26 @@ fn matrices(out: &mut String, plan: &Plan) -> std::fmt::Result {
         PlanKind::Paper => "Matrices",
         PlanKind::Reduced => "Matrices of the paper's plan",
     };
-    writeln!(out, "\n{whose}, filter = {filter}: {share:.1} % of {all} entries each")?;
+    say!(out, "\n{whose}, filter = {filter}: {share:.1} % of {all} entries each");
     for chunk in plan.nnz.0.chunks(MATRICES_PER_LINE) {
         let names: String = chunk.iter().map(|(name, _)| format!("{name:>9}")).collect();
         let counts: String = chunk.iter().map(|(_, count)| format!("{count:>9}")).collect();
-        writeln!(out, "  {names}\n  {counts}")?;
+        say!(out, "  {names}\n  {counts}");
     }
-    Ok(())
 }
 
-fn reductions(out: &mut String, plan: &Plan) -> std::fmt::Result {
+fn reductions(out: &mut String, plan: &Plan) {
     let steps = savings(plan);
-    let Some(first) = steps.first() else { return Ok(()) };
+    let Some(first) = steps.first() else { return };
     let mut table = Table::new(["Reductions", "MACs a frame", "share", "coefficients in ROM"]);
     for step in &steps {
         let share = format!("{:.1} %", 100.0 * step.macs as f64 / first.macs as f64);
         table.row([step.step.to_owned(), step.macs.to_string(), share, step.coefficients.to_string()]);
     }
-    write!(out, "\n{}", table.text(0, 0))?;
-    Ok(())
+    append(out, &table);
 }
 
-fn work(out: &mut String, plan: &Plan) -> std::fmt::Result {
+fn work(out: &mut String, plan: &Plan) {
     let mut table = Table::new(["Products", "entries", "cycles", "busy", "result"]).ending_in_words();
     for product in products(plan) {
         table.row([
@@ -176,10 +172,10 @@ fn work(out: &mut String, plan: &Plan) -> std::fmt::Result {
             product.result,
         ]);
     }
-    write!(out, "\n{}", table.text(0, 0))
+    append(out, &table);
 }
 
-fn speed(out: &mut String, plan: &Plan) -> std::fmt::Result {
+fn speed(out: &mut String, plan: &Plan) {
     let clock = plan.design.hardware.clock_mhz;
     let timeline = &plan.timeline;
     let busy = 100.0 * plan.schedule.busy_fraction();
@@ -193,33 +189,31 @@ fn speed(out: &mut String, plan: &Plan) -> std::fmt::Result {
     for (what, cycles, remark) in [
         ("latency", timeline.latency_cycles, "first beat in to last beat out".to_owned()),
         ("interval", timeline.interval_cycles, format!("between frames, {rate:.0} frames a second{faster}")),
-        ("products", timeline.spmv_cycles, format!("{} busy {busy:.1} %", count(plan.design.hardware.lanes, "lane"))),
+        ("products", timeline.spmv_cycles, format!("{} busy {busy:.1} %", counted(plan.design.hardware.lanes, "lane"))),
         (
             "search",
             timeline.search_cycles,
-            count(plan.estimator.block().cells(&plan.design.sensor).cells, "evaluation cell"),
+            counted(plan.estimator.block().cells(&plan.design.sensor).cells, "evaluation cell"),
         ),
     ] {
         table.row([what.to_owned(), cycles.to_string(), format!("{:.2}", cycles as f64 / clock), remark]);
     }
-    write!(out, "\n{}", table.text(0, 0))
+    append(out, &table);
 }
 
-fn resources(out: &mut String, plan: &Plan) -> std::fmt::Result {
+fn resources(out: &mut String, plan: &Plan) {
     let resources = &plan.resources;
     let part = &plan.design.hardware.part;
-    writeln!(out, "\nResources, predicted")?;
+    say!(out, "\nResources, predicted");
     let (dsp, block) = (resources.dsp, resources.dsp_block.name());
-    write!(out, "  {dsp} {block}, {} RAMB36, {} bits of ROM", resources.bram36, resources.rom_bits)?;
-    match shares(plan) {
-        Some([dsp, bram36]) => writeln!(out, ": {dsp:.1} and {bram36:.1} % of {part}")?,
-        None => writeln!(out)?,
-    }
+    let share =
+        shares(plan).map_or_else(String::new, |[dsp, bram36]| format!(": {dsp:.1} and {bram36:.1} % of {part}"));
+    say!(out, "  {dsp} {block}, {} RAMB36, {} bits of ROM{share}", resources.bram36, resources.rom_bits);
     if let Some(logic) = logic(plan) {
-        writeln!(out, "  about {logic}")?;
+        say!(out, "  about {logic}");
     }
     for told in [excess(plan), doubled(plan)].into_iter().flatten() {
-        writeln!(out, "  {told}")?;
+        say!(out, "  {told}");
     }
     let mut table = Table::new(["Memories", "block", "how many", "words", "bits", "RAMB36"]);
     for memory in &resources.memories {
@@ -232,27 +226,28 @@ fn resources(out: &mut String, plan: &Plan) -> std::fmt::Result {
             memory.all_bram36().to_string(),
         ]);
     }
-    write!(out, "\n{}", table.text(0, 0))
+    append(out, &table);
 }
 
-fn energy(out: &mut String, plan: &Plan) -> std::fmt::Result {
+fn energy(out: &mut String, plan: &Plan) {
     let energy = Energy::of(plan);
     let rate = plan.design.hardware.clock_mhz * 1e6 / plan.timeline.interval_cycles as f64;
     let (microjoules, watts) = (energy.fabric_nj / 1e3, energy.watts(rate));
-    writeln!(
+    say!(
         out,
         "\nEnergy, estimated: {microjoules:.1} uJ a frame, {watts:.2} W at {rate:.0} frames a second, without static power"
-    )?;
-    writeln!(out, "  from counted products and memory accesses; nothing of it was measured")
+    );
+    say!(out, "  from counted products and memory accesses; nothing of it was measured");
 }
 
-fn numbers(out: &mut String, plan: &Plan) -> std::fmt::Result {
+fn numbers(out: &mut String, plan: &Plan) {
     let hardware = &plan.design.hardware;
-    writeln!(
+    say!(
         out,
         "\nNumbers: {}-bit coefficients, {}-bit vectors, 48-bit sums; no stress within full scale overflows them",
-        hardware.coefficient_bits, hardware.data_bits
-    )?;
+        hardware.coefficient_bits,
+        hardware.data_bits
+    );
     for (what, unit, format) in [
         ("stress b", "Pa", plan.formats.stress),
         ("weights |w|", "N", plan.formats.weight),
@@ -261,22 +256,16 @@ fn numbers(out: &mut String, plan: &Plan) -> std::fmt::Result {
     ] {
         let step = format!("2^{}", format.lsb);
         let worst = short(format.bound as f64 * format.step());
-        writeln!(out, "  {what:<12} steps of {step:<6} {unit:<2}   worst case {worst} {unit}")?;
+        say!(out, "  {what:<12} steps of {step:<6} {unit:<2}   worst case {worst} {unit}");
     }
     if plan.scales_frames() {
         let octaves = 63 - plan.formats.stress.bound.leading_zeros();
-        writeln!(
+        say!(
             out,
             "  range        each frame's own: forces are up to 2^{octaves} times as fine where all of it is faint"
-        )?;
+        );
     }
     if let Some(narrow) = narrow(plan) {
-        writeln!(out, "  {narrow}")?;
+        say!(out, "  {narrow}");
     }
-    Ok(())
-}
-
-/// `1 lane`, `2 lanes`.
-pub fn count(count: usize, what: &str) -> String {
-    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }
