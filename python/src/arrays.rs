@@ -129,19 +129,23 @@ fn tuple(shape: &[usize]) -> String {
     format!("({}{})", sides.join(", "), if sides.len() == 1 { "," } else { "" })
 }
 
-/// Forces of n frames, as arrays have them.
+/// What a frame yields besides its field and the forces of its contacts.
+#[derive(Clone, Default)]
+struct Summary {
+    status: Status,
+    resultant: [f64; 3],
+    torque: [f64; 3],
+    friction: f64,
+    direction: f64,
+    friction_xy: [f64; 2],
+    standard_error: f64,
+    contacts: u8,
+}
+
+/// Forces of n frames.
 pub struct Forces {
     sensor: Sensor,
-    /// Status words.
-    pub status: Vec<Status>,
-    /// Friction coefficients.
-    pub friction: Vec<f64>,
-    direction: Vec<f64>,
-    friction_xy: Vec<f64>,
-    resultant: Vec<f64>,
-    torque: Vec<f64>,
-    standard_error: Vec<f64>,
-    contacts: Vec<u8>,
+    summaries: Vec<Summary>,
     /// So many of each frame.
     records: Vec<ContactForces>,
     of_frame: usize,
@@ -151,14 +155,7 @@ pub struct Forces {
 
 /// Where the forces of [`PIECE`] frames go.
 pub struct Piece<'a> {
-    status: &'a mut [Status],
-    friction: &'a mut [f64],
-    direction: &'a mut [f64],
-    friction_xy: &'a mut [f64],
-    resultant: &'a mut [f64],
-    torque: &'a mut [f64],
-    standard_error: &'a mut [f64],
-    contacts: &'a mut [u8],
+    summaries: &'a mut [Summary],
     records: &'a mut [ContactForces],
     field: &'a mut [f64],
 }
@@ -167,14 +164,7 @@ impl Forces {
     /// Zeros for so many frames, each with so many records of contacts, with a field or without.
     pub fn zeros(sensor: &Sensor, frames: usize, records: usize, with_field: bool) -> Self {
         Self {
-            status: vec![Status::default(); frames],
-            friction: vec![0.0; frames],
-            direction: vec![0.0; frames],
-            friction_xy: vec![0.0; 2 * frames],
-            resultant: vec![0.0; 3 * frames],
-            torque: vec![0.0; 3 * frames],
-            standard_error: vec![0.0; frames],
-            contacts: vec![0; frames],
+            summaries: vec![Summary::default(); frames],
             records: vec![ContactForces::default(); frames * records],
             of_frame: records,
             field: vec![0.0; if with_field { 3 * sensor.taxels() * frames } else { 0 }],
@@ -186,54 +176,38 @@ impl Forces {
     /// The places of every [`PIECE`] frames, in order.
     pub fn pieces(&mut self) -> Vec<Piece<'_>> {
         let of_frame = if self.has_field { 3 * self.sensor.taxels() } else { 0 };
-        let counts: Vec<usize> = self.status.chunks(PIECE).map(<[Status]>::len).collect();
+        let counts: Vec<usize> = self.summaries.chunks(PIECE).map(<[Summary]>::len).collect();
         let fields = split(&mut self.field, of_frame, &counts);
         let records = split(&mut self.records, self.of_frame, &counts);
-        let places = self.status.chunks_mut(PIECE).zip(self.friction.chunks_mut(PIECE));
-        let places = places.zip(self.direction.chunks_mut(PIECE)).zip(self.friction_xy.chunks_mut(2 * PIECE));
-        let places = places.zip(self.resultant.chunks_mut(3 * PIECE)).zip(self.torque.chunks_mut(3 * PIECE));
-        let places = places.zip(self.standard_error.chunks_mut(PIECE)).zip(self.contacts.chunks_mut(PIECE));
-        let places = places.zip(records.into_iter().zip(fields));
-        let piece = |(
-            (((((((status, friction), direction), friction_xy), resultant), torque), error), contacts),
-            (records, field),
-        )| Piece {
-            status,
-            friction,
-            direction,
-            friction_xy,
-            resultant,
-            torque,
-            standard_error: error,
-            contacts,
-            records,
-            field,
-        };
-        places.map(piece).collect()
+        let places = self.summaries.chunks_mut(PIECE).zip(records).zip(fields);
+        places.map(|((summaries, records), field)| Piece { summaries, records, field }).collect()
     }
 
     /// What decides which frames and contacts slip.
     pub fn of_slips(&mut self) -> impl Iterator<Item = (&mut Status, f64, &mut [ContactForces])> {
-        let records = split(&mut self.records, self.of_frame, &vec![1; self.status.len()]);
-        let frames = self.status.iter_mut().zip(self.friction.iter().copied()).zip(records);
-        frames.map(|((status, friction), records)| (status, friction, records))
+        let records = split(&mut self.records, self.of_frame, &vec![1; self.summaries.len()]);
+        let frames = self.summaries.iter_mut().zip(records);
+        frames.map(|(summary, records)| (&mut summary.status, summary.friction, records))
     }
 
     /// The arrays in the package's class `sptfra.Forces`.
     pub fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         let Sensor { columns, rows, .. } = self.sensor;
-        let frames = self.status.len();
+        let all = &self.summaries;
+        let frames = all.len();
         let kwargs = PyDict::new(py);
         let put = |name: &str, values: Vec<f64>, shape: &[usize]| kwargs.set_item(name, array(py, values, shape)?);
-        let status: Vec<u16> = self.status.iter().map(|status| status.0 as u16).collect();
+        let each = |value: fn(&Summary) -> f64| all.iter().map(value).collect();
+        let status: Vec<u16> = all.iter().map(|of| of.status.0 as u16).collect();
+        let contacts: Vec<u8> = all.iter().map(|of| of.contacts).collect();
         kwargs.set_item("status", status.into_pyarray(py))?;
-        put("resultant", self.resultant, &[frames, 3])?;
-        put("torque", self.torque, &[frames, 3])?;
-        put("friction", self.friction, &[frames])?;
-        put("direction", self.direction, &[frames])?;
-        put("friction_xy", self.friction_xy, &[frames, 2])?;
-        put("standard_error", self.standard_error, &[frames])?;
-        kwargs.set_item("contacts", self.contacts.into_pyarray(py))?;
+        put("resultant", all.iter().flat_map(|of| of.resultant).collect(), &[frames, 3])?;
+        put("torque", all.iter().flat_map(|of| of.torque).collect(), &[frames, 3])?;
+        put("friction", each(|of| of.friction), &[frames])?;
+        put("direction", each(|of| of.direction), &[frames])?;
+        put("friction_xy", all.iter().flat_map(|of| of.friction_xy).collect(), &[frames, 2])?;
+        put("standard_error", each(|of| of.standard_error), &[frames])?;
+        kwargs.set_item("contacts", contacts.into_pyarray(py))?;
         if self.of_frame > 0 {
             let of_contact = |contact| golden::forces::record(contact).into_iter().chain(contact.torque);
             let values: Vec<f64> = self.records.iter().flat_map(of_contact).collect();
@@ -257,13 +231,16 @@ impl Piece<'_> {
     pub fn put(&mut self, index: usize, solution: &Solution) {
         let Solution { status, resultant, torque, standard_error, contacts, records, mu, phi, mu_x, mu_y, field } =
             solution;
-        self.status[index] = *status;
-        (self.friction[index], self.direction[index]) = (*mu, *phi);
-        self.friction_xy[2 * index..][..2].copy_from_slice(&[*mu_x, *mu_y]);
-        self.resultant[3 * index..][..3].copy_from_slice(resultant);
-        self.torque[3 * index..][..3].copy_from_slice(torque);
-        self.standard_error[index] = *standard_error;
-        self.contacts[index] = *contacts as u8;
+        self.summaries[index] = Summary {
+            status: *status,
+            resultant: *resultant,
+            torque: *torque,
+            friction: *mu,
+            direction: *phi,
+            friction_xy: [*mu_x, *mu_y],
+            standard_error: *standard_error,
+            contacts: *contacts as u8,
+        };
         self.records[records.len() * index..][..records.len()].copy_from_slice(records);
         let taxels = field[0].len();
         if self.field.is_empty() {
