@@ -63,7 +63,7 @@ impl<'a> Resolved<'a> {
     ///
     /// # Errors
     ///
-    /// [`ResolvedError::Taken`], too for a calibration that is not the design's.
+    /// [`ResolvedError::Taken`], also for a calibration that is not the design's.
     pub fn beside(design: &Design, inputs: &[PathBuf], out: &'a Path) -> Result<Self, ResolvedError> {
         let resolved = Self { design: out, is_anew: false, source: None };
         keep_apart(out, inputs)?;
