@@ -7,7 +7,7 @@ use testbench::tools;
 use crate::support::{library_file, library_folders, look_in};
 
 /// Module, parameter, value, what the tool must name.
-const SENSELESS: [(&str, &str, &str, &str); 37] = [
+const SENSELESS: [(&str, &str, &str, &str); 36] = [
     ("bz", "COLUMNS", "1", "columns_and_rows_must_be_2_to_64"),
     ("fold", "CHANNELS", "2", "channels_must_be_1_or_4"),
     ("frame_writer", "DATA_BITS", "36", "data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded"),
@@ -21,8 +21,7 @@ const SENSELESS: [(&str, &str, &str, &str); 37] = [
     ("spmv_pe", "OPERAND_DEPTH", "12", "the_operand_memory_does_not_hold_its_vectors"),
     ("spmv_pe", "MIRROR_SIDE", "4", "only_a_square_grid_is_mirrored"),
     ("spmv_lane", "COEFFICIENT_BITS", "28", "two_multipliers_have_27_by_35_bits"),
-    ("spmv_sequencer", "PROGRAMS", "4", "programs_must_be_1_to_3"),
-    ("spmv_sequencer", "LASTS", "1", "the_last_product_must_end_its_program"),
+    ("spmv_array", "LASTS", "1", "the_last_product_must_end_its_program"),
     ("spmv_collector", "CHANNELS", "2", "channels_must_be_1_or_4"),
     ("spmv_collector", "DESTINATION_BITS", "5", "a_destination_has_3_or_4_bits"),
     ("unfold", "CHANNELS", "2", "channels_must_be_1_or_4"),

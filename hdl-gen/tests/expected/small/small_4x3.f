@@ -42,7 +42,6 @@ rtl/sptfra_spmv_array.v
 rtl/sptfra_spmv_collector.v
 rtl/sptfra_spmv_lane.v
 rtl/sptfra_spmv_pe.v
-rtl/sptfra_spmv_sequencer.v
 rtl/sptfra_summary.v
 rtl/sptfra_taxel_stream.v
 rtl/sptfra_taxel_walk.v

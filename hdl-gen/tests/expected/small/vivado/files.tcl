@@ -57,7 +57,6 @@ foreach file {
     sptfra_spmv_collector.v
     sptfra_spmv_lane.v
     sptfra_spmv_pe.v
-    sptfra_spmv_sequencer.v
     sptfra_summary.v
     sptfra_taxel_stream.v
     sptfra_taxel_walk.v
