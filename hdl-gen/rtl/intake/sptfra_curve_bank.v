@@ -199,21 +199,79 @@ module sptfra_curve_bank #(
     wire signed [26:0] first_next = is_last ? $signed(head[33:7]) : $signed(knots_here[27*segment_next +: 27]);
     wire signed [27:0] along = {first_next[26], first_next} - {first[26], first};
     wire begins = walk_takes && of_segment && (kind == 2'd3) && (number_next <= head[6:0]);
-    wire contradicts;
 
-    sptfra_curve_check check (
-        .clock       (clock),
-        .forget      (walk_begins),
-        .begins      (begins),
-        .along       (along),
-        .value       (value),
-        .slope       (slope),
-        .shift       (shift),
-        .is_last     (is_last),
-        .last_value  (head[60:34]),
-        .value_taken (walk_takes && of_segment && (kind == 2'd1)),
-        .contradicts (contradicts)
-    );
+    // ---- Its check: it multiplies by two bits of the slope a cycle. From begins to contradicts: 17 cycles; the next
+    // segment's value is taken in the 12th
+    localparam [4:0] SHIFTS = 5'd10, ROUNDS = 5'd11, AIMS = 5'd14, MISSES = 5'd15, JUDGES = 5'd16, ENDS = 5'd17;
+
+    reg [4:0] step; // 0: none under way
+    reg [17:0] multiplier;
+    reg [45:0] multiplicand;
+    reg [45:0] product;
+    reg [5:0] shift_held;
+    reg negative;
+    reg ends_curve;
+    reg signed [26:0] begin_value;
+    reg signed [26:0] taken;
+    reg signed [46:0] rise;
+    reg signed [27:0] way;
+    reg signed [47:0] missed;
+    reg [27:0] tolerance;
+    reg rises;
+    reg falls;
+    reg contradicts;
+    wire [46:0] rounded = {1'b0, product} + 47'd1;
+    wire signed [46:0] half = {1'b0, rounded[46:1]};
+    wire [27:0] distance = way[27] ? -way : way;
+    wire signed [47:0] most_missed = {20'd0, tolerance};
+
+    always @(posedge clock) begin
+        step <= ((step == 5'd0) || (step == ENDS)) ? 5'd0 : step + 5'd1;
+        if (walk_takes && of_segment && (kind == 2'd1)) begin // the value of the next segment
+            taken <= value;
+        end
+        multiplier <= multiplier >> 2;
+        multiplicand <= multiplicand << 2;
+        if (step < SHIFTS) begin
+            product <= product + (multiplier[0] ? multiplicand : 46'd0)
+                + (multiplier[1] ? {multiplicand[44:0], 1'b0} : 46'd0);
+        end
+        if (step == SHIFTS) begin
+            product <= product >> (shift_held - 6'd1);
+        end
+        if (step == ROUNDS) begin
+            rise <= negative ? -half : half;
+        end
+        if (step == AIMS) begin
+            way <= (ends_curve ? {head[60], head[60:34]} : {taken[26], taken}) - {begin_value[26], begin_value};
+        end
+        if (step == MISSES) begin
+            missed <= {rise[46], rise} - {{20{way[27]}}, way};
+            tolerance <= (distance >> 16) + 28'd1;
+            rises <= rises || (way > 28'sd0);
+            falls <= falls || way[27];
+        end
+        if (step == JUDGES) begin
+            contradicts <= contradicts || (missed > most_missed) || (missed < -most_missed) || (rises && falls);
+        end
+        if (begins) begin
+            step <= 5'd1;
+            multiplier <= slope[17] ? -slope : slope;
+            multiplicand <= {18'd0, along};
+            product <= 46'd0;
+            shift_held <= shift;
+            negative <= slope[17];
+            ends_curve <= is_last;
+            begin_value <= value;
+            contradicts <= contradicts || (along <= 28'sd0);
+        end
+        if (walk_begins) begin
+            step <= 5'd0;
+            contradicts <= 1'b0;
+            rises <= 1'b0;
+            falls <= 1'b0;
+        end
+    end
 
     // ---- Frames
     function [26:0] reach_of(input signed [26:0] from, input signed [26:0] to);
@@ -232,7 +290,7 @@ module sptfra_curve_bank #(
     assign lasts = {head_1[33:7], head_0[33:7]};
     assign reaches = {reach_of(knots_1[26:0], head_1[33:7]), reach_of(knots_0[26:0], head_0[33:7])};
 
-    wire _unused = &{1'b0, command[55:52]};
+    wire _unused = &{1'b0, command[55:52], rounded[0]};
 
 endmodule
 
