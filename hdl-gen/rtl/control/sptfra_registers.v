@@ -3,8 +3,9 @@
 //
 // The registers behind the AXI4-Lite port: what the design is, soft reset, status, interrupts, counters.
 //
-// Reads answer in the same cycle. A soft reset clears the counters. Interrupts and the rate of the average stay. The
-// map is that of the design's control/NAME.rdl.
+// Reads answer in the same cycle. Frames are counted and their cycles measured from the handshakes of the core's two
+// streams; sixteen frames may be inside. A soft reset clears the counters. Interrupts and the rate of the average stay.
+// The map is that of the design's control/NAME.rdl.
 
 `default_nettype none
 
@@ -64,16 +65,15 @@ module sptfra_registers #(
     input  wire discarding,
     input  wire receiving,
     input  wire sending,
-    // Figures and events
-    input  wire [31:0] frames_in,
-    input  wire [31:0] frames_out,
-    input  wire [31:0] frames_bad,
-    input  wire [31:0] last_status,
-    input  wire [31:0] last_latency,
-    input  wire [31:0] last_interval,
-    input  wire [31:0] frames_dropped,
-    input  wire frame_done,
-    input  wire frame_error,
+    // The core's streams
+    input  wire restart, // of the core: by reset or soft reset
+    input  wire in_taken,
+    input  wire in_last,
+    input  wire out_taken,
+    input  wire out_last,
+    input  wire [31:0] out_word,
+    input  wire dropped, // a frame, for one cycle
+    // Events
     input  wire bad_access,
     output reg  irq,
     // k from the next frame on, 8 at most
@@ -130,6 +130,81 @@ module sptfra_registers #(
         || ((read_word >= CONTROL) && (read_word <= LAST_INTERVAL))
         || (DROPS && (read_word == FRAMES_DROPPED)) || (AVERAGES && (read_word == SMOOTHING));
     assign smoothing = rate[3] ? 4'd8 : rate;
+
+    // ---- Frames and their cycles
+    reg [31:0] frames_in;
+    reg [31:0] frames_out;
+    reg [31:0] frames_bad;
+    reg [31:0] last_status;
+    reg [31:0] last_latency;
+    reg [31:0] last_interval;
+    reg [31:0] frames_dropped;
+    // For one cycle, after a frame's last beat
+    reg frame_done;
+    reg frame_error;
+    reg [31:0] now;
+    reg in_frame;
+    reg out_frame;
+    reg [31:0] status; // of the frame going out
+    // When each frame inside began
+    reg [31:0] beginnings [0:15];
+    reg [3:0] newest;
+    reg [3:0] oldest;
+    reg [31:0] last_end;
+    reg seen_end;
+
+    wire frame_ends = out_taken && out_last;
+    wire faulty = (status[5:4] != 2'd0);
+
+    always @(posedge clock) begin
+        now <= now + 32'd1;
+        if (in_taken) begin
+            in_frame <= !in_last;
+            if (!in_frame) begin
+                beginnings[newest] <= now;
+                newest <= newest + 4'd1;
+            end
+            if (in_last) begin
+                frames_in <= frames_in + 32'd1;
+            end
+        end
+        if (out_taken) begin
+            out_frame <= !out_last;
+            if (!out_frame) begin
+                status <= out_word;
+            end
+        end
+        frames_dropped <= frames_dropped + {31'd0, dropped};
+        frame_done <= frame_ends;
+        frame_error <= frame_ends && faulty;
+        if (frame_ends) begin
+            frames_out <= frames_out + 32'd1;
+            frames_bad <= frames_bad + {31'd0, faulty};
+            last_status <= status;
+            last_latency <= now - beginnings[oldest] + 32'd1;
+            last_interval <= seen_end ? now - last_end : 32'd0;
+            last_end <= now;
+            seen_end <= 1'b1;
+            oldest <= oldest + 4'd1;
+        end
+        if (restart) begin
+            now <= 32'd0;
+            in_frame <= 1'b0;
+            out_frame <= 1'b0;
+            newest <= 4'd0;
+            oldest <= 4'd0;
+            seen_end <= 1'b0;
+            frames_in <= 32'd0;
+            frames_out <= 32'd0;
+            frames_bad <= 32'd0;
+            last_status <= 32'd0;
+            last_latency <= 32'd0;
+            last_interval <= 32'd0;
+            frames_dropped <= 32'd0;
+            frame_done <= 1'b0;
+            frame_error <= 1'b0;
+        end
+    end
 
     // ---- Reads
     always @(*) begin

@@ -184,8 +184,8 @@ fn the_plain_testbench_counts_with_the_core() {
     let mut files = control();
     let said = simulate(&files).succeeded().stdout;
     assert!(said.contains("PASS") && !said.contains("FAIL"), "{said}");
-    let meter = files.get_mut("rtl/sptfra_frame_meter.v").expect("is there");
-    *meter = String::from_utf8(meter.clone()).expect("text").replace("frames_out + 32'd1", "frames_out").into_bytes();
+    let bank = files.get_mut("rtl/sptfra_registers.v").expect("is there");
+    *bank = String::from_utf8(bank.clone()).expect("text").replace("frames_out + 32'd1", "frames_out").into_bytes();
     let ran = simulate(&files);
     let said = &ran.stdout;
     assert!(!ran.ok && said.contains("FAIL: 0 words wrong") && said.contains("frames counted by the core"), "{ran:?}");

@@ -104,8 +104,8 @@ fn a_wrong_count_is_noticed() {
         ("frames_in <= frames_in + 32'd1", "frames_in <= frames_in + 32'd2"),
         ("frame_done <= frame_ends;", "frame_done <= 1'b0;"),
     ];
-    for (from, to) in some_faults(faults, |&(from, _)| ("sptfra_frame_meter", from)) {
-        let built = broken(plan, "sptfra_frame_meter", from, to);
+    for (from, to) in some_faults(faults, |&(from, _)| ("sptfra_registers", from)) {
+        let built = broken(plan, "sptfra_registers", from, to);
         let report = check(&co_simulation, &built, || ()).expect("no rule broken");
         assert_ne!(report.wrong, Vec::<String>::new(), "{to}");
     }
