@@ -102,13 +102,13 @@ fn a_wrong_range_is_noticed() {
         ("sptfra_fold", ".HALF  (DROPPED)", ".HALF  (0)"),
         (
             "sptfra_frame_context",
-            ".take       (direction_take),\n                .oldest     (direction_exponent)",
-            ".take       (take),\n                .oldest     (direction_exponent)",
+            ".take       (direction_take),\n            .oldest     (direction_exponent)",
+            ".take       (take),\n            .oldest     (direction_exponent)",
         ),
         (
             "sptfra_frame_context",
-            ".take       (take),\n                .oldest     (exponent)",
-            ".take       (direction_take),\n                .oldest     (exponent)",
+            ".take       (take),\n            .oldest     (exponent)",
+            ".take       (direction_take),\n            .oldest     (exponent)",
         ),
         ("sptfra_output_word", "error_exponent + FORCE_EXPONENT - scale_exponent", "error_exponent + FORCE_EXPONENT"),
     ];

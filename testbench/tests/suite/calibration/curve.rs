@@ -203,8 +203,8 @@ fn half_a_frame_by_another_curve_is_noticed() {
         ("sptfra_bz", "((CURVE_LEVELS == 0) ? bank : bank_held)", "(active)", &other_gains),
         (
             "sptfra_banks",
-            ".read_bank    (bank),\n                .read_segment",
-            ".read_bank    (active),\n                .read_segment",
+            ".read_bank    (bank),\n            .read_segment",
+            ".read_bank    (active),\n            .read_segment",
             &other_curve,
         ),
     ];

@@ -54,8 +54,8 @@ pub const PROOFS: &[Proof] = &[
             ("sptfra_frame_context", ".take       (cean_take),", ".take       (take),"),
             (
                 "sptfra_frame_context",
-                ".take       (direction_take),\n                .oldest     (direction_variance)",
-                ".take       (take),\n                .oldest     (direction_variance)",
+                ".take       (direction_take),\n            .oldest     (direction_variance)",
+                ".take       (take),\n            .oldest     (direction_variance)",
             ),
             ("sptfra_frame_context", "{in_dropped, now}", "{1'b0, now}"),
             ("sptfra_frame_context", ".write_data (smoothed[24:0]),", ".write_data ({smoothed[24:1], 1'b0}),"),
@@ -178,8 +178,8 @@ pub const PROOFS: &[Proof] = &[
             ("sptfra_frame_scale", "if (settles[SETTLES-2]) begin", "if (settles[SETTLES-3]) begin"),
             (
                 "sptfra_frame_scale",
-                "if (settles[SETTLES]) begin\n                    // What",
-                "begin\n                    // What",
+                "if (settles[SETTLES]) begin\n                // What",
+                "begin\n                // What",
             ),
             ("sptfra_frame_scale", "if (reset || restart) begin", "if (reset) begin"),
         ],

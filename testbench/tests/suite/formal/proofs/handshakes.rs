@@ -25,7 +25,7 @@ const FREE: &[&str] = &[
 ];
 const REDUCED_BROKEN: &[Broken] = &[
     ("sptfra_program_scheduler", "(fields_due != RESIDUALS[1:0])", "1'b1"),
-    ("sptfra_program_scheduler", "                    next_field_bank <= !next_field_bank;\n", ""),
+    ("sptfra_program_scheduler", "                next_field_bank <= !next_field_bank;\n", ""),
     ("sptfra_program_scheduler", "(residuals_there != 2'd0) && friction_known", "(residuals_there != 2'd0)"),
     ("sptfra_program_scheduler", "friction_known && (fields", "friction_known && frame_ready && (fields"),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
