@@ -80,12 +80,6 @@ module sptfra_registers #(
     output wire [3:0] smoothing
 );
 
-    if ((COLUMNS < 8'd2) || (ROWS < 8'd2) || (COLUMNS > 8'd64) || (ROWS > 8'd64)) begin : gen_check_grid
-        sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
-    end
-    if ((STREAM_BYTES != 8'd4) && (STREAM_BYTES != 8'd8) && (STREAM_BYTES != 8'd16)) begin : gen_check_stream
-        sptfra_error_a_beat_has_4_8_or_16_bytes invalid ();
-    end
     if (SAMPLES == 2'd3) begin : gen_check_samples
         sptfra_error_samples_are_float32_int16_or_uint16 invalid ();
     end

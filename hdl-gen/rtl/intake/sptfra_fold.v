@@ -79,10 +79,6 @@ module sptfra_fold #(
     localparam [31:0] LOWER_BEAT_WIDE = LOWER_BEAT;
     localparam [INDEX_WIDTH-1:0] ONE = {{(INDEX_WIDTH-1){1'b0}}, 1'b1};
 
-    if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
-        sptfra_error_channels_must_be_1_or_4 invalid ();
-    end
-
     // ---- The orbit that is read, and its taxels
     reg done;
     reg [ROW_WIDTH-1:0] orbit;

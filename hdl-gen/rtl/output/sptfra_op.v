@@ -85,9 +85,6 @@ module sptfra_op #(
     input  wire m_tready
 );
 
-    if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
-        sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
-    end
     if (SLIP_RELEASE > SLIP_LIMIT) begin : gen_check_slip
         sptfra_error_a_slip_ends_below_its_limit invalid ();
     end

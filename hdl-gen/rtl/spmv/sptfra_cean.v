@@ -54,10 +54,6 @@ module sptfra_cean #(
     output wire [5:0] flags // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
 );
 
-    if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
-        sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
-    end
-
     // ---- Stage 1: magnitude; stage 2: sum and maximum
     reg valid_1;
     reg tensile_1;

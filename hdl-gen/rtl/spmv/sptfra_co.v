@@ -57,10 +57,6 @@ module sptfra_co #(
     output wire [18*40-1:0] sums
 );
 
-    if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
-        sptfra_error_channels_must_be_1_or_4 invalid ();
-    end
-
     wire sums_there;
 
     always @(posedge clock) begin

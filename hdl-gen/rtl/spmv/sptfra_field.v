@@ -48,16 +48,6 @@ module sptfra_field #(
     output wire [64*WORDS-1:0] force_value // the first in the lowest bits
 );
 
-    if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
-        sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
-    end
-    if ((WORDS != 1) && (WORDS != 2) && (WORDS != 4)) begin : gen_check_words
-        sptfra_error_words_must_be_1_2_or_4 invalid ();
-    end
-    if (DATA_BITS > 35) begin : gen_check_data
-        sptfra_error_data_bits_must_be_up_to_35 invalid ();
-    end
-
     localparam FACTOR_BITS = (DATA_BITS > 27) ? 35 : 27;
     localparam PRODUCT_BITS = FACTOR_BITS + 18;
     localparam TAXELS = (WORDS > 1) ? 2 : 1; // read in a cycle

@@ -66,12 +66,6 @@ module sptfra_spmv_collector #(
     output reg  result_last // of its program
 );
 
-    if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
-        sptfra_error_channels_must_be_1_or_4 invalid ();
-    end
-    if ((DESTINATION_BITS != 3) && (DESTINATION_BITS != 4)) begin : gen_check_destination
-        sptfra_error_a_destination_has_3_or_4_bits invalid ();
-    end
     if ((MIRROR != 0) && (CHANNELS != 4)) begin : gen_check_mirror
         sptfra_error_only_four_channels_are_mirrored invalid ();
     end

@@ -46,10 +46,6 @@ module sptfra_unfold #(
     output wire coefficients_complete // one cycle, with the last u: the stress of this frame is done with
 );
 
-    if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
-        sptfra_error_channels_must_be_1_or_4 invalid ();
-    end
-
     // ---- What a value is, beside it on its way: stage k holds what was on the bus k cycles ago
     localparam LATENCY = (CHANNELS == 4) ? 5 : 1; // from the result bus to taxels, which simulations check
     localparam STAGES = (CHANNELS == 4) ? 5 : 1;

@@ -41,10 +41,6 @@ module sptfra_we #(
     output reg  [CHANNELS*DATA_BITS-1:0] write_data // component 0 in the lowest bits
 );
 
-    if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
-        sptfra_error_channels_must_be_1_or_4 invalid ();
-    end
-
     localparam LATENCY = (CHANNELS == 4) ? 5 : 1; // from taxels to the last write of them, which simulations check
     localparam [31:0] BASE = WEIGHT_BASE;
     localparam [31:0] LENGTH = ELEMENTS;
