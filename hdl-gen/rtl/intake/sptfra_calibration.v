@@ -27,7 +27,10 @@ module sptfra_calibration #(
     // Words of a curve, see sptfra_curve_bank
     parameter CURVE_WORDS = 0,
     // Derived
-    parameter TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1
+    parameter TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1,
+    parameter HAS_MORE = ((REPLACEABLE != 0) || (CURVE_WORDS != 0)) ? 1 : 0,
+    parameter COMMAND_BITS = TAXEL_WIDTH + OFFSET_BITS + 31 + 56 * HAS_MORE,
+    parameter WORDS_BITS = OFFSET_BITS + 28 + 34 * HAS_MORE
 ) (
     input  wire clock,
     input  wire reset,
@@ -55,28 +58,13 @@ module sptfra_calibration #(
     output reg  active,
     output reg  [7:0] version,
     output reg  [31:0] crc,
-    output wire [31:0] contact,
-    output wire [26:0] noise,
-    // To the core: the banks
+    // To the core, as of sptfra_bz
+    output wire [67:0] active_calibration,
     input  wire old_in_use,
-    output wire bank_write_gain,
-    output wire bank_write_offset,
-    output wire [TAXEL_WIDTH:0] bank_address,
-    output wire [27:0] bank_write_gain_data,
-    output wire [OFFSET_BITS-1:0] bank_write_offset_data,
-    input  wire [27:0] bank_gain,
-    input  wire [OFFSET_BITS-1:0] bank_offset,
-    // To the core: tare
-    output wire tare_run,
-    output reg  [3:0] tare_frames,
-    output wire [TAXEL_WIDTH-1:0] tare_taxel,
-    input  wire tare_finished,
-    input  wire tare_restless,
-    input  wire tare_bad_frame,
-    input  wire signed [26:0] tare_mean,
-    // To the core: what banks say of dead taxels and of the curve, see sptfra_dead_bank
-    output wire [55:0] dead_command,
-    input  wire [33:0] dead_result
+    output wire [COMMAND_BITS-1:0] bank_command,
+    input  wire [WORDS_BITS-1:0] bank_words,
+    output wire [TAXEL_WIDTH+4:0] tare_command,
+    input  wire [29:0] tare_result
 );
 
     localparam [31:0] OFFSETS_WIDE = TAXELS;
@@ -85,8 +73,8 @@ module sptfra_calibration #(
     localparam [15:0] FIRST_OFFSET = OFFSETS_WIDE[15:0];
     localparam [15:0] CONTACT_WORD = CONTACT_WIDE[15:0];
     localparam [15:0] NOISE_WORD = CONTACT_WORD + 16'd1;
-    localparam [31:0] DEAD_WORDS = (REPLACEABLE != 0) ? 1 + REPLACEABLE + REPLACEABLE * TAXELS : 0;
-    localparam [31:0] MORE_WORDS = DEAD_WORDS + CURVE_WORDS;
+    localparam [31:0] MAP_WORDS = (REPLACEABLE != 0) ? 1 + REPLACEABLE + REPLACEABLE * TAXELS : 0;
+    localparam [31:0] MORE_WORDS = MAP_WORDS + CURVE_WORDS;
     localparam [15:0] LAST_WORD = NOISE_WORD + MORE_WORDS[15:0];
     localparam [15:0] LAST_TAXEL = LAST_TAXEL_WIDE[15:0];
     localparam [2:0] IDLE = 3'd0, WALK = 3'd1, DECIDE = 3'd2, DRAIN = 3'd3, GATHER = 3'd4, COPY = 3'd5;
@@ -101,6 +89,9 @@ module sptfra_calibration #(
     reg [31:0] sum; // of the CRC
     reg [63:0] contacts; // bank 1, bank 0
     reg [53:0] noises;
+    reg [3:0] tare_frames; // their logarithm
+    wire tare_finished, tare_restless, tare_bad_frame;
+    wire signed [26:0] tare_mean;
     wire copy_writes = (state == COPY) && (step == COPY_WRITES);
     // Or of the other one: the active one is read, and never written.
     wire of_active = (state == IDLE) ? (index_active && !write) : (state == COPY) && !copy_writes;
@@ -117,10 +108,10 @@ module sptfra_calibration #(
 
     assign idle = (state == IDLE);
     assign taring = (state == GATHER) || (state == COPY);
-    assign contact = active ? contacts[63:32] : contacts[31:0];
-    assign noise = active ? noises[53:27] : noises[26:0];
-    assign tare_run = taring;
-    assign tare_taxel = place[TAXEL_WIDTH-1:0];
+    assign active_calibration = {active, version, active ? contacts[63:32] : contacts[31:0],
+        active ? noises[53:27] : noises[26:0]};
+    assign tare_command = {taring, tare_frames, place[TAXEL_WIDTH-1:0]};
+    assign {tare_finished, tare_restless, tare_bad_frame, tare_mean} = tare_result;
 
     // ---- The word of a bank: its place, then its content
     wire [15:0] position = (state == IDLE) ? index : place;
@@ -128,21 +119,28 @@ module sptfra_calibration #(
     wire of_offset = !of_gain && (position < CONTACT_WORD);
     wire of_contact = (position == CONTACT_WORD);
     wire of_noise = (position == NOISE_WORD);
-    wire of_dead = (position > NOISE_WORD) && (position <= LAST_WORD);
+    wire of_more = (position > NOISE_WORD) && (position <= LAST_WORD);
     wire [15:0] taxel = of_gain ? position : position - FIRST_OFFSET;
     reg [4:0] kind; // of the word that the memories show
     reg kind_bank;
+    wire [27:0] bank_gain = bank_words[OFFSET_BITS +: 28];
+    wire [OFFSET_BITS-1:0] bank_offset = bank_words[OFFSET_BITS-1:0];
+    wire [33:0] more_result; // of map and curve: see sptfra_dead_bank
 
-    assign bank_address = {bank, taxel[TAXEL_WIDTH-1:0]};
+    if (HAS_MORE != 0) begin : gen_more
+        assign more_result = bank_words[OFFSET_BITS+28 +: 34];
+    end else begin : gen_thresholds_last
+        assign more_result = 34'd0;
+    end
 
     always @(posedge clock) begin
-        kind <= {of_dead, of_noise, of_contact, of_offset, of_gain};
+        kind <= {of_more, of_noise, of_contact, of_offset, of_gain};
         kind_bank <= bank;
         word <= (kind[0] ? {4'd0, bank_gain} : 32'd0)
             | (kind[1] ? {{(32-OFFSET_BITS){bank_offset[OFFSET_BITS-1]}}, bank_offset} : 32'd0)
             | (kind[2] ? (kind_bank ? contacts[63:32] : contacts[31:0]) : 32'd0)
             | (kind[3] ? {5'd0, kind_bank ? noises[53:27] : noises[26:0]} : 32'd0)
-            | (kind[4] ? dead_result[31:0] : 32'd0);
+            | (kind[4] ? more_result[31:0] : 32'd0);
     end
 
     // ---- Bounds: a mantissa has all of its bits in use; the rest is what the numbers behind have room for
@@ -152,7 +150,7 @@ module sptfra_calibration #(
     wire noise_fits = (write_data[31:26] == 6'd0) && (write_data[25:0] != 26'd0);
 
     assign write_allowed = (of_gain && gain_fits) || (of_offset && offset_fits)
-        || (of_contact && (write_data != 32'd0)) || (of_noise && noise_fits) || (of_dead && dead_result[32]);
+        || (of_contact && (write_data != 32'd0)) || (of_noise && noise_fits) || (of_more && more_result[32]);
 
     // ---- Tare: offsets of the active bank, less what the frames had
     reg [27:0] copied_gain;
@@ -161,26 +159,30 @@ module sptfra_calibration #(
     wire writes = write && idle;
     wire new_contact = writes && of_contact && (write_data != 32'd0);
     wire new_noise = writes && of_noise && noise_fits;
-
     wire copy_ends = copy_writes && (place == LAST_TAXEL);
-
-    assign bank_write_gain = (writes && of_gain && gain_fits) || (copy_writes && new_offset_fits);
-    assign bank_write_offset = (writes && of_offset && offset_fits) || (copy_writes && new_offset_fits);
-    assign bank_write_gain_data = idle ? write_data[27:0] : copied_gain;
-    assign bank_write_offset_data = idle ? write_data[OFFSET_BITS-1:0] : new_offset[OFFSET_BITS-1:0];
-
-    assign dead_command = {
+    wire copies_taxel = copy_writes && new_offset_fits;
+    wire [TAXEL_WIDTH+OFFSET_BITS+86:0] command = {
+        // Of map and curve
         state == COPY,
         (state == COPY) && (step == COPY_TAKES),
-        copy_writes && new_offset_fits,
+        copies_taxel,
         copy_ends,
         state == IDLE,
-        (state == WALK) && (step == LAST_BYTE) && of_dead,
-        write && idle && of_dead,
+        (state == WALK) && (step == LAST_BYTE) && of_more,
+        writes && of_more,
         bank,
         position,
-        write_data
+        write_data,
+        // Of gains and offsets
+        (writes && of_gain && gain_fits) || copies_taxel,
+        (writes && of_offset && offset_fits) || copies_taxel,
+        bank,
+        taxel[TAXEL_WIDTH-1:0],
+        idle ? write_data[27:0] : copied_gain,
+        idle ? write_data[OFFSET_BITS-1:0] : new_offset[OFFSET_BITS-1:0]
     };
+
+    assign bank_command = command[COMMAND_BITS-1:0];
 
     // ---- CRC-32 as of Ethernet and zlib, a byte a cycle, the lowest first
     wire [1:0] byte_place = step[1:0] - 2'd2;
@@ -256,8 +258,8 @@ module sptfra_calibration #(
             end
             DECIDE: begin
                 wrong_crc <= wrong;
-                contradiction <= !wrong && dead_result[33];
-                state <= (wrong || dead_result[33]) ? IDLE : DRAIN;
+                contradiction <= !wrong && more_result[33];
+                state <= (wrong || more_result[33]) ? IDLE : DRAIN;
             end
             // The frame coming in may still need the other bank
             default: begin
@@ -283,7 +285,7 @@ module sptfra_calibration #(
     // ---- The active bank, and both banks' thresholds
 
     always @(posedge clock) begin
-        if ((state == DECIDE) && !wrong && !dead_result[33] && !reset) begin
+        if ((state == DECIDE) && !wrong && !more_result[33] && !reset) begin
             active <= !active;
             version <= version + 8'd1;
             crc <= crc_end;
@@ -302,8 +304,8 @@ module sptfra_calibration #(
         end
     end
 
-    wire _unused = &{1'b0, taxel, mantissa[15:0], OFFSETS_WIDE[31:16], CONTACT_WIDE[31:16], LAST_TAXEL_WIDE[31:16],
-        MORE_WORDS[31:16]};
+    wire _unused = &{1'b0, command, taxel, mantissa[15:0], OFFSETS_WIDE[31:16], CONTACT_WIDE[31:16],
+        LAST_TAXEL_WIDE[31:16], MORE_WORDS[31:16]};
 
 endmodule
 

@@ -14,14 +14,16 @@ use crate::resources::memory::memory;
 /// Bits of a taxel's sum and extremes while it is tared.
 const TARE_BITS: u32 = 37 + 2 * LONG_BITS;
 
-/// Whether banks have words behind the thresholds.
-pub fn has_more(of: &CalibrationPlan) -> bool {
-    of.power_up.dead.room > 0 || of.power_up.curve.is_some()
+/// Bits of `bank_command` and of `bank_words`, which go between the banks and their control: more where words stand behind
+/// the thresholds.
+pub fn bank_bits(of: &CalibrationPlan) -> [u32; 2] {
+    let [command, words] = if of.power_up.dead.room > 0 || of.power_up.curve.is_some() { [56, 34] } else { [0, 0] };
+    [address_bits(of.taxels) + of.offset_bits() + 31 + command, of.offset_bits() + 28 + words]
 }
 
-/// Bits that go between the banks' control and what they say of dead taxels and of the curve, there and back.
-pub fn dead_bits(of: &CalibrationPlan) -> [u32; 2] {
-    if has_more(of) { [56, 34] } else { [0, 0] }
+/// Bits of `tare_command`.
+pub fn tare_bits(taxels: usize) -> u32 {
+    address_bits(taxels) + 5
 }
 
 /// Parameters of `sptfra_calibration`.

@@ -6,7 +6,6 @@ use tera::{Context, context};
 
 use crate::blocks::calibration;
 use crate::blocks::registers::Constants;
-use crate::format::address_bits;
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
 
@@ -92,12 +91,14 @@ fn context(plan: &Plan, hash: &str) -> Context {
 fn of_calibration(of: &CalibrationPlan) -> Value {
     let steps = of.count_steps.to_bits();
     let first = of.power_up.gain_words().next().unwrap_or_default();
+    let [command_bits, words_bits] = calibration::bank_bits(of);
     json!({
         "control": verilog(&calibration::control(of)),
         "registers": verilog(&calibration::registers(of)),
-        // Highest bits of a taxel's number and of an offset.
-        "taxel_top": address_bits(of.taxels) - 1,
-        "offset_top": of.offset_bits() - 1,
+        // Bits of what goes between the banks and their control.
+        "command_bits": command_bits,
+        "words_bits": words_bits,
+        "tare_bits": calibration::tare_bits(of.taxels),
         // Reset values of the map.
         "words": of.words(),
         "shift": of.shift,
@@ -109,8 +110,6 @@ fn of_calibration(of: &CalibrationPlan) -> Value {
         "crc": format!("{:08x}", of.power_up.crc()),
         // Dead taxels that a bank has room for.
         "replaceable": of.power_up.dead.room,
-        // Whether banks have words behind the thresholds.
-        "more": calibration::has_more(of),
         // What `CALIBRATION_CURVE` says, where banks hold a curve.
         "curve": calibration::curve_register(of),
     })

@@ -11,7 +11,6 @@ use crate::blocks::{
 use crate::cores::LONG_BITS;
 use crate::format::{SUM_BITS, address_bits};
 use crate::plan::Plan;
-use crate::plan::calibration::CalibrationPlan;
 use crate::plan::streams::Intake;
 use crate::plan::words::status_bits;
 
@@ -34,7 +33,7 @@ fn context(plan: &Plan) -> Context {
     let folded = plan.channels() > 1;
     let streams = plan.streams();
     let unpack = streams.intake == Intake::Unpacked;
-    let [dead_command_bits, dead_result_bits] = plan.calibration.as_ref().map_or([0, 0], calibration::dead_bits);
+    let [bank_command_bits, bank_words_bits] = plan.calibration.as_ref().map_or([1, 1], calibration::bank_bits);
     let estimator = estimator_block.parameters(design, plan.channels());
     let estimator = estimator.some(plan.thresholds.error.as_ref(), |all, error| error.parameters(all));
     let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
@@ -49,13 +48,11 @@ fn context(plan: &Plan) -> Context {
         estimator => if design.algorithm.estimator.is_calibrated() { "grid search" } else { "line search" },
         filter => &filter_text(&design.algorithm.filter),
         counts => &design.input.counts(),
-        // Whether gains and offsets stand in RAM; bits of a taxel's number and of an offset there.
+        // Whether gains and offsets stand in RAM; bits of what goes between the banks and their control.
         calibration => &plan.calibration.is_some(),
-        taxel_width => &address_bits(plan.taxels()),
-        offset_bits => &plan.calibration.as_ref().map_or(0, CalibrationPlan::offset_bits),
-        // Bits of what goes between the banks' control and what they say of dead taxels, there and back.
-        dead_command_bits,
-        dead_result_bits,
+        bank_command_bits,
+        bank_words_bits,
+        tare_command_bits => &calibration::tare_bits(plan.taxels()),
         // Of an ingress FIFO that drops frames, its parameters.
         overrun => &streams.drops.then(|| verilog(&ingress_fifo::parameters(plan))),
         // Bits and bytes of a beat, 32-bit words of it, samples of it; bits of a sample and what it is.
