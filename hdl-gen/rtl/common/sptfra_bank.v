@@ -5,8 +5,7 @@
 // configured. No reset touches it. Two copies of one write and one read port each: such a memory is a block RAM of half
 // the size, or LUTs.
 //
-// Latency: 1 cycle from address to data, on the second port held while read_enable is low. A word must not be used that
-// is read in the cycle in which it is written.
+// Latency: 1 cycle from address to data. A word must not be used that is read in the cycle in which it is written.
 
 `default_nettype none
 
@@ -27,7 +26,6 @@ module sptfra_bank #(
     input  wire [WIDTH-1:0]         write_data,
     output wire [WIDTH-1:0]         data,
     // Reads
-    input  wire                     read_enable,
     input  wire [ADDRESS_WIDTH-1:0] read_address,
     output wire [WIDTH-1:0]         read_data
 );
@@ -59,7 +57,7 @@ module sptfra_bank #(
         .write_enable  (write_enable),
         .write_address (address),
         .write_data    (write_data),
-        .read_enable   (read_enable),
+        .read_enable   (1'b1),
         .read_address  (read_address),
         .read_data     (read_data)
     );

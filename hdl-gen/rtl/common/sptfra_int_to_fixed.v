@@ -4,7 +4,7 @@
 // 16-bit integer to 27-bit fixed point: fixed = count * 2^shift, rounded half away from zero, clipped to +-limit. It
 // does to an integer what sptfra_float_to_fixed does to the same number, as late.
 //
-// Latency 5 enabled cycles, one value an enabled cycle. saturated: the rounded magnitude is limit or more.
+// Latency 5 cycles, one value a cycle. saturated: the rounded magnitude is limit or more.
 
 `default_nettype none
 
@@ -13,7 +13,6 @@ module sptfra_int_to_fixed #(
     parameter SIGNED = 1
 ) (
     input  wire clock,
-    input  wire enable, // every stage advances; else all hold
     input  wire [15:0] count,
     input  wire signed [9:0] shift, // sampled with count
     input  wire [26:0] limit, // constant while conversions are under way
@@ -48,21 +47,19 @@ module sptfra_int_to_fixed #(
     assign saturated = over_5;
 
     always @(posedge clock) begin
-        if (enable) begin
-            negatives <= {negatives[3:1], negative};
-            magnitude_1 <= negative ? -count : count;
-            right_1 <= (distance >= RIGHTMOST) ? RIGHTMOST[5:0] : distance[5:0];
-            too_far_1 <= distance[11]; // to the left
-            coarse_2 <= {magnitude_1, 28'd0} >> {right_1[5:3], 3'd0};
-            right_2 <= right_1[2:0];
-            beyond_2 <= too_far_1 && (magnitude_1 != 16'd0);
-            doubled_3 <= coarse_2 >> right_2;
-            beyond_3 <= beyond_2;
-            rounded_4 <= doubled_3[27:1] + {26'd0, doubled_3[0]};
-            over_4 <= beyond_3 || (doubled_3 >= {16'd0, threshold});
-            value_5 <= negatives[4] ? -$signed(magnitude_4) : $signed(magnitude_4);
-            over_5 <= over_4;
-        end
+        negatives <= {negatives[3:1], negative};
+        magnitude_1 <= negative ? -count : count;
+        right_1 <= (distance >= RIGHTMOST) ? RIGHTMOST[5:0] : distance[5:0];
+        too_far_1 <= distance[11]; // to the left
+        coarse_2 <= {magnitude_1, 28'd0} >> {right_1[5:3], 3'd0};
+        right_2 <= right_1[2:0];
+        beyond_2 <= too_far_1 && (magnitude_1 != 16'd0);
+        doubled_3 <= coarse_2 >> right_2;
+        beyond_3 <= beyond_2;
+        rounded_4 <= doubled_3[27:1] + {26'd0, doubled_3[0]};
+        over_4 <= beyond_3 || (doubled_3 >= {16'd0, threshold});
+        value_5 <= negatives[4] ? -$signed(magnitude_4) : $signed(magnitude_4);
+        over_5 <= over_4;
     end
 
     wire _unused = &{1'b0, distance};

@@ -111,7 +111,6 @@ module sptfra_banks #(
         .address      (address),
         .write_data   (gain_in[27:18]),
         .data         (words[OFFSET_BITS+18 +: 10]),
-        .read_enable  (1'b1),
         .read_address ({exponent_bank, exponent_taxel}),
         .read_data    (exponent)
     );
@@ -127,7 +126,6 @@ module sptfra_banks #(
         .address      (address),
         .write_data   (gain_in[17:0]),
         .data         (words[OFFSET_BITS +: 18]),
-        .read_enable  (1'b1),
         .read_address ({bank, gain_taxel}),
         .read_data    (gain)
     );
@@ -143,7 +141,6 @@ module sptfra_banks #(
         .address      (address),
         .write_data   (offset_in),
         .data         (words[OFFSET_BITS-1:0]),
-        .read_enable  (1'b1),
         .read_address ({bank, gain_taxel}),
         .read_data    (offset)
     );
@@ -189,7 +186,6 @@ module sptfra_banks #(
             .result       (map_result),
             .active       (active),
             .active_count (active_count),
-            .read_enable  (1'b1),
             .read_bank    (bank),
             .read_taxel   (taxel_ahead),
             .read_weights (weights),

@@ -185,7 +185,6 @@ module sptfra_curve_bank #(
             .address      (address),
             .write_data   (copy_writes ? line[PLACE +: WIDTH] : data[WIDTH-1:0]),
             .data         (line[PLACE +: WIDTH]),
-            .read_enable  (1'b1),
             .read_address ({read_bank, read_segment}),
             .read_data    (read_line[PLACE +: WIDTH])
         );

@@ -36,7 +36,6 @@ module sptfra_dead_bank #(
     // Of the active bank, and of the frame that comes in
     input  wire active,
     output wire [3:0] active_count,
-    input  wire read_enable,
     input  wire read_bank,
     input  wire [TAXEL_WIDTH-1:0] read_taxel,
     output wire [18*REPLACEABLE-1:0] read_weights,
@@ -155,7 +154,6 @@ module sptfra_dead_bank #(
             .address      ({bank, taxel[TAXEL_WIDTH-1:0]}),
             .write_data   (copies ? copied[18*index +: 18] : data[17:0]),
             .data         (weights[18*index +: 18]),
-            .read_enable  (read_enable),
             .read_address ({read_bank, read_taxel}),
             .read_data    (read_weights[18*index +: 18])
         );

@@ -120,7 +120,6 @@ module sptfra_samples #(
             .SIGNED ((SAMPLE == 1) ? 1 : 0)
         ) int_to_fixed (
             .clock     (clock),
-            .enable    (1'b1),
             .count     (decoded),
             .shift     (shift),
             .limit     (limit),
