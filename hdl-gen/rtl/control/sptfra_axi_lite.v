@@ -22,22 +22,22 @@ module sptfra_axi_lite (
     input  wire s_wvalid,
     output wire s_wready,
     output wire [1:0] s_bresp,
-    output wire s_bvalid,
+    output reg  s_bvalid,
     input  wire s_bready,
     input  wire [11:0] s_araddr,
     input  wire s_arvalid,
     output wire s_arready,
-    output wire [31:0] s_rdata,
+    output reg  [31:0] s_rdata,
     output wire [1:0] s_rresp,
-    output wire s_rvalid,
+    output reg  s_rvalid,
     input  wire s_rready,
     // Bank: words of four bytes
     output wire write_enable, // for one cycle, if write_mapped
-    output wire [9:0] write_word,
-    output wire [31:0] write_data,
+    output reg  [9:0] write_word,
+    output reg  [31:0] write_data,
     output wire [31:0] write_mask, // bits of the bytes that are written
     input  wire write_mapped,
-    output wire [9:0] read_word,
+    output reg  [9:0] read_word,
     input  wire [31:0] read_data, // zero if not read_mapped
     input  wire read_mapped,
     output wire bad_access // one cycle: an address without a register
@@ -48,77 +48,65 @@ module sptfra_axi_lite (
     // ---- Writes
     reg address_held;
     reg data_held;
-    reg [9:0] write_word_held;
-    reg [31:0] write_data_held;
     reg [3:0] strobes_held;
-    reg response_valid;
 
-    wire write_acts = address_held && data_held && !response_valid;
+    wire write_acts = address_held && data_held && !s_bvalid;
 
     assign s_awready = !address_held;
     assign s_wready = !data_held;
-    assign s_bvalid = response_valid;
     assign s_bresp = OKAY;
     assign write_enable = write_acts && write_mapped;
-    assign write_word = write_word_held;
-    assign write_data = write_data_held;
     assign write_mask = {{8{strobes_held[3]}}, {8{strobes_held[2]}}, {8{strobes_held[1]}}, {8{strobes_held[0]}}};
 
     always @(posedge clock) begin
         if (s_awvalid && s_awready) begin
             address_held <= 1'b1;
-            write_word_held <= s_awaddr[11:2];
+            write_word <= s_awaddr[11:2];
         end
         if (s_wvalid && s_wready) begin
             data_held <= 1'b1;
-            write_data_held <= s_wdata;
+            write_data <= s_wdata;
             strobes_held <= s_wstrb;
         end
-        if (response_valid && s_bready) begin
-            response_valid <= 1'b0;
+        if (s_bvalid && s_bready) begin
+            s_bvalid <= 1'b0;
         end
         if (write_acts) begin
             address_held <= 1'b0;
             data_held <= 1'b0;
-            response_valid <= 1'b1;
+            s_bvalid <= 1'b1;
         end
         if (reset) begin
             address_held <= 1'b0;
             data_held <= 1'b0;
-            response_valid <= 1'b0;
+            s_bvalid <= 1'b0;
         end
     end
 
     // ---- Reads
     reg read_held;
-    reg [9:0] read_word_held;
-    reg read_valid;
-    reg [31:0] read_data_held;
 
-    wire read_acts = read_held && !read_valid;
+    wire read_acts = read_held && !s_rvalid;
 
     assign s_arready = !read_held;
-    assign s_rvalid = read_valid;
     assign s_rresp = OKAY;
-    assign s_rdata = read_data_held;
-    assign read_word = read_word_held;
 
     always @(posedge clock) begin
         if (s_arvalid && s_arready) begin
             read_held <= 1'b1;
-            read_word_held <= s_araddr[11:2];
+            read_word <= s_araddr[11:2];
         end
-        if (read_valid && s_rready) begin
-            read_valid <= 1'b0;
+        if (s_rvalid && s_rready) begin
+            s_rvalid <= 1'b0;
         end
         if (read_acts) begin
             read_held <= 1'b0;
-            read_valid <= 1'b1;
-            read_data_held <= read_data;
+            s_rvalid <= 1'b1;
+            s_rdata <= read_data;
         end
         if (reset) begin
             read_held <= 1'b0;
-            read_valid <= 1'b0;
+            s_rvalid <= 1'b0;
         end
     end
 
