@@ -120,28 +120,15 @@ module sptfra_co #(
         reg sum_valid;
         reg [2:0] sum_row;
         reg signed [4*DATA_BITS-1:0] sum_value;
-        // As they come, at 3 (p - 1) + q
-        reg signed [39:0] g_0;
-        reg signed [39:0] g_1;
-        reg signed [39:0] g_2;
-        reg signed [39:0] g_3;
-        reg signed [39:0] g_4;
-        reg signed [39:0] g_5;
-        reg signed [39:0] g_6;
-        reg signed [39:0] g_7;
-        reg signed [39:0] g_8;
-        reg signed [39:0] t_x0;
-        reg signed [39:0] t_x1;
-        reg signed [39:0] t_x2;
-        reg signed [39:0] t_y0;
-        reg signed [39:0] t_y1;
-        reg signed [39:0] t_y2;
-        reg signed [39:0] t_z0;
-        reg signed [39:0] t_z1;
-        reg signed [39:0] t_z2;
-        reg signed [39:0] share_z;
-        reg signed [39:0] share_tx;
-        reg signed [39:0] share_ty;
+        // As they come: G_pq at 3 (p - 1) + q, those of the torques at q
+        reg [9*40-1:0] g_sums;
+        reg [3*40-1:0] x_sums;
+        reg [3*40-1:0] y_sums;
+        reg [3*40-1:0] z_sums;
+        // Of q = 0, the weights' share of f_z, T_x and T_y
+        reg [39:0] share_z;
+        reg [39:0] share_x;
+        reg [39:0] share_y;
         wire [DATA_BITS-1:0] value_0 = sum_value[DATA_BITS*0 +: DATA_BITS];
         wire [DATA_BITS-1:0] value_1 = sum_value[DATA_BITS*1 +: DATA_BITS];
         wire [DATA_BITS-1:0] value_2 = sum_value[DATA_BITS*2 +: DATA_BITS];
@@ -152,10 +139,11 @@ module sptfra_co #(
         wire signed [39:0] component_3 = {{(40-DATA_BITS){value_3[DATA_BITS-1]}}, value_3};
 
         assign sums_there = sum_valid && (sums_count == 3'd6);
-        // Those of f_z for q = 0 less the weights themselves
         assign sums = {
-            t_z2, t_z1, t_z0, t_y2, t_y1, t_y0 - share_ty, t_x2, t_x1, t_x0 - share_tx,
-            g_8, g_7, g_6 - share_z, g_5, g_4, g_3, g_2, g_1, g_0
+            z_sums,
+            y_sums[3*40-1:40], y_sums[39:0] - share_y,
+            x_sums[3*40-1:40], x_sums[39:0] - share_x,
+            g_sums[9*40-1:7*40], g_sums[6*40 +: 40] - share_z, g_sums[6*40-1:0]
         };
 
         always @(posedge clock) begin
@@ -166,39 +154,39 @@ module sptfra_co #(
                 sums_count <= (sums_count == 3'd6) ? 3'd0 : sums_count + 3'd1;
                 case (sum_row)
                     3'd0: begin
-                        g_0 <= component_1;
-                        g_3 <= component_2;
-                        g_6 <= component_0;
-                        t_z0 <= component_3;
+                        g_sums[40*0 +: 40] <= component_1;
+                        g_sums[40*3 +: 40] <= component_2;
+                        g_sums[40*6 +: 40] <= component_0;
+                        z_sums[40*0 +: 40] <= component_3;
                     end
                     3'd1: begin
-                        g_1 <= component_0;
-                        g_4 <= component_3;
-                        g_7 <= component_1;
-                        t_z1 <= component_2;
+                        g_sums[40*1 +: 40] <= component_0;
+                        g_sums[40*4 +: 40] <= component_3;
+                        g_sums[40*7 +: 40] <= component_1;
+                        z_sums[40*1 +: 40] <= component_2;
                     end
                     3'd2: begin
-                        g_2 <= component_3;
-                        g_5 <= component_0;
-                        g_8 <= component_2;
-                        t_z2 <= component_1;
+                        g_sums[40*2 +: 40] <= component_3;
+                        g_sums[40*5 +: 40] <= component_0;
+                        g_sums[40*8 +: 40] <= component_2;
+                        z_sums[40*2 +: 40] <= component_1;
                     end
                     3'd3: begin
                         share_z <= component_0;
-                        share_tx <= component_2;
-                        share_ty <= component_1;
+                        share_x <= component_2;
+                        share_y <= component_1;
                     end
                     3'd4: begin
-                        t_x0 <= component_2;
-                        t_y0 <= component_1;
+                        x_sums[40*0 +: 40] <= component_2;
+                        y_sums[40*0 +: 40] <= component_1;
                     end
                     3'd5: begin
-                        t_x1 <= component_3;
-                        t_y1 <= component_0;
+                        x_sums[40*1 +: 40] <= component_3;
+                        y_sums[40*1 +: 40] <= component_0;
                     end
                     default: begin
-                        t_x2 <= component_0;
-                        t_y2 <= component_3;
+                        x_sums[40*2 +: 40] <= component_0;
+                        y_sums[40*2 +: 40] <= component_3;
                     end
                 endcase
             end
