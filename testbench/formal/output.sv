@@ -96,13 +96,7 @@ module harness (
     wire [63:0] value_4;
     wire [9:0] exponent_4;
     wire [11:4] raws;
-    wire [31:0] raw_5;
-    wire [31:0] raw_6;
-    wire [31:0] raw_7;
-    wire [31:0] raw_8;
-    wire [31:0] raw_9;
-    wire [31:0] raw_10;
-    wire [31:0] raw_11;
+    wire [32*7-1:0] raw_words;
     wire [32*7-1:0] stages;
 
     sptfra_output subject (
@@ -165,13 +159,7 @@ module harness (
         .\gen_words[0].word.value_4 (value_4),
         .\gen_words[0].word.exponent_4 (exponent_4),
         .\gen_words[0].word.raws (raws),
-        .\gen_words[0].word.raw_5 (raw_5),
-        .\gen_words[0].word.raw_6 (raw_6),
-        .\gen_words[0].word.raw_7 (raw_7),
-        .\gen_words[0].word.raw_8 (raw_8),
-        .\gen_words[0].word.raw_9 (raw_9),
-        .\gen_words[0].word.raw_10 (raw_10),
-        .\gen_words[0].word.raw_11 (raw_11),
+        .\gen_words[0].word.raw_words (raw_words),
         .\gen_words[0].word.fixed_to_float.stages (stages)
     );
 
@@ -270,7 +258,6 @@ module harness (
         held_quotient[21:0], held_angle[21:0], held_error[21:0], held_blank, held_scale, held_counters, held_timestamp,
         held_status};
     wire needed = busy || issued || valid[1] || valid[2];
-    wire [32*7-1:0] raw_words = {raw_11, raw_10, raw_9, raw_8, raw_7, raw_6, raw_5};
 
     always @(*) begin
         if (started) begin

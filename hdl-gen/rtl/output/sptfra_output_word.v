@@ -117,13 +117,7 @@ module sptfra_output_word #(
 
     // ---- Stages 5 to 11: float32; words that are none pass beside it
     wire [31:0] float_word;
-    reg [31:0] raw_5;
-    reg [31:0] raw_6;
-    reg [31:0] raw_7;
-    reg [31:0] raw_8;
-    reg [31:0] raw_9;
-    reg [31:0] raw_10;
-    reg [31:0] raw_11;
+    reg [7*32-1:0] raw_words; // of stages 11 to 5
 
     sptfra_fixed_to_float fixed_to_float (
         .clock      (clock),
@@ -135,17 +129,11 @@ module sptfra_output_word #(
 
     always @(posedge clock) begin
         if (advance) begin
-            raw_5 <= value_4[31:0];
-            raw_6 <= raw_5;
-            raw_7 <= raw_6;
-            raw_8 <= raw_7;
-            raw_9 <= raw_8;
-            raw_10 <= raw_9;
-            raw_11 <= raw_10;
+            raw_words <= {raw_words[6*32-1:0], value_4[31:0]};
         end
     end
 
-    assign data_11 = raws[11] ? raw_11 : float_word;
+    assign data_11 = raws[11] ? raw_words[7*32-1 -: 32] : float_word;
 
 endmodule
 
