@@ -152,15 +152,15 @@ module harness (
         .held_error_exponent (held_error_exponent),
         .held_mu_x           (held_mu_x),
         .held_mu_y           (held_mu_y),
-        .\gen_words[0].word.word_3 (word_3),
-        .\gen_words[0].word.summary_3 (summary_3),
-        .\gen_words[0].word.summary_exponent_3 (summary_exponent_3),
-        .\gen_words[0].word.field_exponent_3 (field_exponent_3),
-        .\gen_words[0].word.value_4 (value_4),
-        .\gen_words[0].word.exponent_4 (exponent_4),
-        .\gen_words[0].word.raws (raws),
-        .\gen_words[0].word.raw_words (raw_words),
-        .\gen_words[0].word.fixed_to_float.stages (stages)
+        .\gen_words[0].word_3 (word_3),
+        .\gen_words[0].summary_3 (summary_3),
+        .\gen_words[0].summary_exponent_3 (summary_exponent_3),
+        .\gen_words[0].field_exponent_3 (field_exponent_3),
+        .\gen_words[0].value_4 (value_4),
+        .\gen_words[0].exponent_4 (exponent_4),
+        .\gen_words[0].raws (raws),
+        .\gen_words[0].raw_words (raw_words),
+        .\gen_words[0].fixed_to_float.stages (stages)
     );
 
     always @(posedge clock) begin

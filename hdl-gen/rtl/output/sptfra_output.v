@@ -17,7 +17,7 @@
 //
 // One beat of WORDS words a cycle while the sink takes them, the first word in the lowest bits. The first beat comes
 // 13 cycles after start. Frames without an answer send zeros but for words 0, 1 and 13. Zeros fill the last beat.
-// Taxels' forces come from the field memory as they go out.
+// Taxels' forces come from the field memory as they go out. Names end in the cycles since the beat was issued.
 
 `default_nettype none
 
@@ -206,42 +206,109 @@ module sptfra_output #(
         end
     end
 
-    // ---- Stages 3 to 11: the words of a beat
+    // ---- Stages 3 and 4: the words of a beat, from the summary, or from the field in stage 4
+    localparam signed [9:0] FORCE_EXPONENT = FORCE_LSB[9:0];
+    localparam signed [9:0] TORQUE_EXPONENT = TORQUE_LSB[9:0];
+    localparam signed [9:0] FIELD_EXPONENT = FIELD_LSB[9:0];
+    localparam signed [9:0] FRICTION_EXPONENT = -10'sd16;
+    localparam signed [9:0] ANGLE_EXPONENT = -10'sd29;
+    wire signed [9:0] scale_exponent = $signed({5'd0, held_scale});
     genvar index;
 
     for (index = 0; index < WORDS; index = index + 1) begin : gen_words
         localparam [3:0] PLACE = index;
         wire [31:0] word_wide_2 = {{(32-SUMMARY_WIDTH){1'b0}}, beat_2} << WORD_WIDTH;
+        wire [3:0] word_2 = word_wide_2[3:0] | PLACE;
         wire signed [63:0] force_3 = $signed(field_value[64*index +: 64]);
+        wire behind_3 = (index >= REMAINDER) && lasts[3]; // the frame's last word: 0
         wire _unused_word = &{1'b0, word_wide_2};
+        reg [3:0] word_3;
+        reg signed [63:0] summary_3;
+        reg signed [9:0] summary_exponent_3;
+        reg signed [9:0] field_exponent_3; // the next frame may be held while a last word is here
+        reg signed [63:0] value_4;
+        reg signed [9:0] exponent_4;
+        reg [11:4] raws; // words that are no float32
+        wire raw_3 = !in_field[3] && ((word_3 == 4'd0) || (word_3 == 4'd1) || (word_3 == 4'd13));
 
-        sptfra_output_word #(
-            .FORCE_LSB  (FORCE_LSB),
-            .TORQUE_LSB (TORQUE_LSB),
-            .FIELD_LSB  (FIELD_LSB)
-        ) word (
-            .clock             (clock),
-            .advance           (advance),
-            .word_2            (word_wide_2[3:0] | PLACE),
-            .in_field_3        (in_field[3]),
-            .blank_3           (blanks[3]),
-            .behind_3          ((index >= REMAINDER) && lasts[3]),
-            .field_value_3     (force_3),
-            .data_11           (m_tdata[32*index +: 32]),
-            .frame_2           (frame_2),
-            .status            (held_status),
-            .timestamp         (held_timestamp),
-            .counters          (held_counters),
-            .scale             (held_scale),
-            .wrench            (held_wrench),
-            .friction_quotient (held_quotient),
-            .friction_exponent (held_exponent),
-            .angle             (held_angle),
-            .error_value       (held_error),
-            .error_exponent    (held_error_exponent),
-            .mu_x              (held_mu_x),
-            .mu_y              (held_mu_y)
+        always @(posedge clock) begin
+            if (advance) begin
+                raws <= {raws[10:4], raw_3};
+                // Stage 3
+                word_3 <= word_2;
+                field_exponent_3 <= FIELD_EXPONENT - scale_exponent;
+                summary_exponent_3 <= FORCE_EXPONENT - scale_exponent;
+                case (word_2)
+                    4'd0: summary_3 <= {32'd0, frame_2, held_status};
+                    4'd1: summary_3 <= {32'd0, held_timestamp};
+                    4'd2: summary_3 <= held_wrench[64*0 +: 64];
+                    4'd3: summary_3 <= held_wrench[64*1 +: 64];
+                    4'd4: summary_3 <= held_wrench[64*2 +: 64];
+                    4'd5: begin
+                        summary_3 <= held_wrench[64*3 +: 64];
+                        summary_exponent_3 <= TORQUE_EXPONENT - scale_exponent;
+                    end
+                    4'd6: begin
+                        summary_3 <= held_wrench[64*4 +: 64];
+                        summary_exponent_3 <= TORQUE_EXPONENT - scale_exponent;
+                    end
+                    4'd7: begin
+                        summary_3 <= held_wrench[64*5 +: 64];
+                        summary_exponent_3 <= TORQUE_EXPONENT - scale_exponent;
+                    end
+                    4'd8: begin
+                        summary_3 <= held_quotient;
+                        summary_exponent_3 <= held_exponent;
+                    end
+                    4'd9: begin
+                        summary_3 <= { {32{held_angle[31]}}, held_angle};
+                        summary_exponent_3 <= ANGLE_EXPONENT;
+                    end
+                    4'd10: begin
+                        summary_3 <= { {46{held_mu_x[17]}}, held_mu_x};
+                        summary_exponent_3 <= FRICTION_EXPONENT;
+                    end
+                    4'd11: begin
+                        summary_3 <= { {46{held_mu_y[17]}}, held_mu_y};
+                        summary_exponent_3 <= FRICTION_EXPONENT;
+                    end
+                    4'd12: begin
+                        summary_3 <= held_error;
+                        summary_exponent_3 <= held_error_exponent + FORCE_EXPONENT - scale_exponent;
+                    end
+                    4'd13: summary_3 <= {32'd0, held_counters};
+                    default: summary_3 <= 64'sd0;
+                endcase
+                // Stage 4
+                if (in_field[3]) begin
+                    value_4 <= (blanks[3] || behind_3) ? 64'sd0 : force_3;
+                    exponent_4 <= field_exponent_3;
+                end else begin
+                    value_4 <= (blanks[3] && !raw_3) ? 64'sd0 : summary_3;
+                    exponent_4 <= summary_exponent_3;
+                end
+            end
+        end
+
+        // Stages 5 to 11: float32; words that are none pass beside it
+        wire [31:0] float_word;
+        reg [7*32-1:0] raw_words; // of stages 11 to 5
+
+        sptfra_fixed_to_float fixed_to_float (
+            .clock      (clock),
+            .enable     (advance),
+            .fixed      (value_4),
+            .exponent   (exponent_4),
+            .float_bits (float_word)
         );
+
+        always @(posedge clock) begin
+            if (advance) begin
+                raw_words <= {raw_words[6*32-1:0], value_4[31:0]};
+            end
+        end
+
+        assign m_tdata[32*index +: 32] = raws[11] ? raw_words[7*32-1 -: 32] : float_word;
     end
 
     assign m_tlast = lasts[11];

@@ -49,8 +49,8 @@ fn modules_and_model_have_the_same_constants() {
         ("sptfra_summary", "ONE", one),
         ("sptfra_op", "FRICTION_FRACTION", FRICTION_FRACTION.into()),
         ("sptfra_op", "PULLING", PULLING),
-        ("sptfra_output_word", "FRICTION_EXPONENT", FRICTION_FRACTION.into()), // a negative one
-        ("sptfra_output_word", "ANGLE_EXPONENT", cordic::ANGLE_FRACTION_BITS.into()),
+        ("sptfra_output", "FRICTION_EXPONENT", FRICTION_FRACTION.into()), // a negative one
+        ("sptfra_output", "ANGLE_EXPONENT", cordic::ANGLE_FRACTION_BITS.into()),
         ("sptfra_grid_level", "WEIGHT_BITS", joint::search::WEIGHT_BITS.into()),
         ("sptfra_friction", "LINEAR_FRACTION", joint::LINEAR_FRACTION.into()),
         ("sptfra_friction", "CUBIC_FRACTION", joint::CUBIC_FRACTION.into()),

@@ -110,7 +110,7 @@ fn a_wrong_range_is_noticed() {
             ".take       (take),\n            .oldest     (exponent)",
             ".take       (direction_take),\n            .oldest     (exponent)",
         ),
-        ("sptfra_output_word", "error_exponent + FORCE_EXPONENT - scale_exponent", "error_exponent + FORCE_EXPONENT"),
+        ("sptfra_output", "error_exponent + FORCE_EXPONENT - scale_exponent", "error_exponent + FORCE_EXPONENT"),
     ];
     let faults = some_faults(faults, |&(module, from, _)| (module, from));
     let plan = planned(&designs().swap_remove(2));

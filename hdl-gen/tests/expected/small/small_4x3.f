@@ -26,7 +26,6 @@ rtl/sptfra_multiply.v
 rtl/sptfra_op.v
 rtl/sptfra_orbit_images.v
 rtl/sptfra_output.v
-rtl/sptfra_output_word.v
 rtl/sptfra_program_scheduler.v
 rtl/sptfra_ram.v
 rtl/sptfra_ratio.v

@@ -41,7 +41,6 @@ foreach file {
     sptfra_op.v
     sptfra_orbit_images.v
     sptfra_output.v
-    sptfra_output_word.v
     sptfra_program_scheduler.v
     sptfra_ram.v
     sptfra_ratio.v

@@ -76,8 +76,8 @@ pub const PROOFS: &[Proof] = &[
         induction: "1",
         altered: &[],
         broken: &[
-            ("sptfra_output_word", "exponent_4 <= field_exponent_3;", "exponent_4 <= FIELD_EXPONENT - scale_exponent;"),
-            ("sptfra_output_word", "(blank_3 || behind_3)", "behind_3"),
+            ("sptfra_output", "exponent_4 <= field_exponent_3;", "exponent_4 <= FIELD_EXPONENT - scale_exponent;"),
+            ("sptfra_output", "(blanks[3] || behind_3)", "behind_3"),
             ("sptfra_output", "!issued && !valid[1] && !valid[2];", "!issued && !valid[1];"),
             ("sptfra_output", "frame_1 <= frame_count;", "frame_1 <= frame_count - 16'd1;"),
         ],
