@@ -43,7 +43,7 @@ module sptfra_unfold #(
     output wire [ROW_WIDTH-1:0] taxel_row,
     output wire [CHANNELS*DATA_BITS-1:0] taxels,
     output wire taxel_last, // of its program
-    output wire coefficients_complete // one cycle, with the last u: the stress of this frame is done with
+    output reg  coefficients_complete // one cycle, with the last u: the stress of this frame is done with
 );
 
     // ---- What a value is, beside it on its way: stage k holds what was on the bus k cycles ago
@@ -60,22 +60,20 @@ module sptfra_unfold #(
     wire [ROW_WIDTH*(STAGES+1)-1:0] next_rows = {rows, result_row};
     // In the cycle before the taxels: the last u of a program is that of the frame
     wire last_u = next_lasts[STAGES-1] && (next_routes[7*(STAGES-1)+1 +: 3] != 3'd0);
-    reg last_u_out;
 
     assign {taxel_force, taxel_u, taxel_y} = routes[7*(STAGES-1) +: 7];
     assign taxel_last = lasts[STAGES-1];
     assign taxel_row = rows[ROW_WIDTH*(STAGES-1) +: ROW_WIDTH];
-    assign coefficients_complete = last_u_out;
 
     always @(posedge clock) begin
         routes <= next_routes[7*STAGES-1:0];
         lasts <= next_lasts[STAGES-1:0];
         rows <= next_rows[ROW_WIDTH*STAGES-1:0];
-        last_u_out <= last_u;
+        coefficients_complete <= last_u;
         if (reset) begin
             routes <= {(7*STAGES){1'b0}};
             lasts <= {STAGES{1'b0}};
-            last_u_out <= 1'b0;
+            coefficients_complete <= 1'b0;
         end
     end
 
