@@ -151,7 +151,7 @@ module harness (
         .\estimator.stages.answer_waits (answer_waits),
         .\estimator.features_start (features_start),
         .\estimator.correction_start (correction_start),
-        .\estimator.next_fill_bank (fill_bank),
+        .\estimator.fill_bank (fill_bank),
         .\estimator.search_bank (search_bank),
 `else
         .\estimator.fill_complete (u_complete),

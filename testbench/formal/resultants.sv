@@ -131,7 +131,7 @@ module harness (
         .\estimator.search_start (search_start),
         .\estimator.features_start (features_start),
         .\estimator.correction_start (correction_start),
-        .\estimator.next_fill_bank (fill_bank),
+        .\estimator.fill_bank (fill_bank),
         .\estimator.search_bank (search_bank),
 `else
         .\estimator.fill_complete (u_complete),

@@ -111,26 +111,8 @@ module sptfra_estimator_joint #(
         sptfra_error_the_joint_estimator_needs_four_channels invalid ();
     end
 
-    // ---- u_q: a register on the way to their memory, and their bank with them
-    reg [2:0] fill_valid;
-    reg [ROW_WIDTH-1:0] fill_row;
-    reg [CHANNELS*DATA_BITS-1:0] fill_values;
-    reg fill_bank;
-    wire next_fill_bank;
-
-    always @(posedge clock) begin
-        fill_valid <= u_valid;
-        fill_row <= u_row;
-        fill_values <= u_values;
-        fill_bank <= next_fill_bank;
-        if (reset) begin
-            fill_valid <= 3'd0;
-            fill_bank <= 1'b0;
-        end
-    end
-
     // ---- Stages: which frame is where
-    wire search_bank;
+    wire fill_bank, search_bank; // of u_q
     wire search_start, features_start, correction_start;
     wire level_done, centre_done, window_done, search_done; // the last of these: the answer is there
 
@@ -155,7 +137,7 @@ module sptfra_estimator_joint #(
         .correction_start (correction_start),
         .answer_valid     (answer_valid),
         .u_released       (u_released),
-        .fill_bank        (next_fill_bank),
+        .fill_bank        (fill_bank),
         .search_bank      (search_bank)
     );
 
@@ -205,6 +187,7 @@ module sptfra_estimator_joint #(
         .COLUMNS                 (COLUMNS),
         .ROWS                    (ROWS),
         .DATA_BITS               (DATA_BITS),
+        .ROW_WIDTH               (ROW_WIDTH),
         .SIDE                    (SIDE),
         .PARALLEL                (PARALLEL),
         .TAXELS                  (TAXELS),
@@ -215,9 +198,9 @@ module sptfra_estimator_joint #(
     ) search (
         .clock       (clock),
         .reset       (reset),
-        .u_valid     (fill_valid),
-        .u_orbit     (fill_row),
-        .u_values    (fill_values),
+        .u_valid     (u_valid),
+        .u_orbit     (u_row),
+        .u_values    (u_values),
         .fill_bank   (fill_bank),
         .search_bank (search_bank),
         .start       (search_start),
@@ -265,6 +248,10 @@ module sptfra_estimator_joint #(
     wire signed [17:0] correction_x, correction_y;
 
     if (NETWORK != 0) begin : gen_correction
+        localparam integer WORD_WIDTH = $clog2(LENGTH);
+        wire input_valid, first_input;
+        wire [WORD_WIDTH-1:0] input_word;
+        wire [4*27-1:0] input_values;
         reg [WITH_FRAME-1:0] features_frame;
 
         assign seen = features_frame;
@@ -274,39 +261,57 @@ module sptfra_estimator_joint #(
             end
         end
 
-        sptfra_correction #(
-            .COLUMNS                   (COLUMNS),
-            .ROWS                      (ROWS),
-            .HALF_X                    (HALF_X),
-            .HALF_Y                    (HALF_Y),
-            .LENGTH                    (LENGTH),
-            .PASSES                    (PASSES),
-            .AT_ONCE                   (AT_ONCE),
-            .STRESS_LEFT               (STRESS_LEFT),
-            .UNIT_SHIFT                (UNIT_SHIFT),
-            .CORRECTION_SHIFT          (CORRECTION_SHIFT),
-            .ROM_DIR                   (ROM_DIR),
-            .ROM_NAME                  (ROM_NAME),
-            .EXPECTED_FEATURES_LATENCY (EXPECTED_FEATURES_LATENCY),
-            .EXPECTED_NETWORK_LATENCY  (EXPECTED_NETWORK_LATENCY)
-        ) correction (
+        sptfra_features #(
+            .COLUMNS          (COLUMNS),
+            .ROWS             (ROWS),
+            .ROW_WIDTH        (ROW_WIDTH),
+            .HALF_X           (HALF_X),
+            .HALF_Y           (HALF_Y),
+            .LENGTH           (LENGTH),
+            .WORD_WIDTH       (WORD_WIDTH),
+            .STRESS_LEFT      (STRESS_LEFT),
+            .EXPECTED_LATENCY (EXPECTED_FEATURES_LATENCY)
+        ) features (
             .clock          (clock),
             .reset          (reset),
+            .start          (search_start),
+            .stress_sum     (search_stress_sum),
             .read_valid     (read_valid),
             .read_orbit     (read_orbit),
             .read_values    (read_values),
-            .search_start   (search_start),
-            .stress_sum     (search_stress_sum),
             .features_start (features_start),
             .mu_x           (features_x),
             .mu_y           (features_y),
             .features_done  (centre_done),
             .saturated      (features_saturated),
-            .start          (correction_start),
-            .window_done    (window_done),
-            .done           (correction_done),
-            .correction_x   (correction_x),
-            .correction_y   (correction_y)
+            .window_start   (correction_start),
+            .input_valid    (input_valid),
+            .input_first    (first_input),
+            .input_word     (input_word),
+            .input_values   (input_values),
+            .window_done    (window_done)
+        );
+
+        sptfra_network #(
+            .LENGTH           (LENGTH),
+            .WORD_WIDTH       (WORD_WIDTH),
+            .PASSES           (PASSES),
+            .AT_ONCE          (AT_ONCE),
+            .UNIT_SHIFT       (UNIT_SHIFT),
+            .CORRECTION_SHIFT (CORRECTION_SHIFT),
+            .ROM_DIR          (ROM_DIR),
+            .ROM_NAME         (ROM_NAME),
+            .EXPECTED_LATENCY (EXPECTED_NETWORK_LATENCY)
+        ) network (
+            .clock        (clock),
+            .reset        (reset),
+            .input_valid  (input_valid),
+            .input_word   (input_word),
+            .input_values (input_values),
+            .start        (first_input),
+            .done         (correction_done),
+            .correction_x (correction_x),
+            .correction_y (correction_y)
         );
     end else begin : gen_none
         assign seen = searched;

@@ -3,12 +3,16 @@
 //
 // Grid search: Condition 1 at SIDE x SIDE values of (mu_x, mu_y), 1/4 apart, and the centroid of its level set.
 //
-// The points are evaluated in parallel, or serially, a row of them at a time.
+// B = sum max(0, u0 + mu_x u1 + mu_y u2) over all taxels. An evaluator adds X of its column and Y of its row, and
+// accumulates what is above zero. A sum beyond its width stays the largest number.
 //
-// Latency from start to done, with Q orbits:
-//   parallel, one taxel a cycle   4 Q + 49 + 4 SIDE
-//   parallel, two taxels a cycle  2 Q + 51 + 2 SIDE
-//   serial                        SIDE (4 Q + 4) + 49
+//   PARALLEL     evaluators               start to first row        next row        start to done
+//   SIDE * SIDE  one a point              4 Q + 13                  1 cycle         4 Q + 49 + 4 SIDE
+//                ... two taxels a cycle   2 Q + 14                  1 cycle         2 Q + 51 + 2 SIDE
+//   SIDE         one a column, row after  4 Q + 13                  4 Q + 1 cycles  SIDE (4 Q + 4) + 49
+//                row of the grid
+//
+// Q: orbits. Each row can be read again until the next start.
 
 `default_nettype none
 
@@ -19,6 +23,8 @@ module sptfra_grid_search #(
     parameter integer ROWS = 10,
     // Bits of u_q
     parameter integer DATA_BITS = 27,
+    // Bits of the number of an orbit
+    parameter integer ROW_WIDTH = 5,
     // Points along an axis, 11 or 13; the generator sets 13
     parameter integer SIDE = 13,
     // Points evaluated at a time: all of them, or SIDE
@@ -32,15 +38,12 @@ module sptfra_grid_search #(
     // Checked in simulation, 0: unchecked: cycles from the start to the first row of points
     parameter integer EXPECTED_VALUES_LATENCY = 0,
     // ... from that row to the centroid
-    parameter integer EXPECTED_LEVEL_LATENCY = 0,
-    // Derived: orbits, and the bits of their number
-    parameter integer ORBITS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
-    parameter integer ROW_WIDTH = (ORBITS > 8) ? $clog2(ORBITS) : 3
+    parameter integer EXPECTED_LEVEL_LATENCY = 0
 ) (
     input  wire clock,
     input  wire reset,
     // u_q of an orbit's taxels, image 0 in the lowest bits
-    input  wire [2:0] u_valid, // q, one-hot
+    input  wire [2:0] u_valid,
     input  wire [ROW_WIDTH-1:0] u_orbit,
     input  wire [4*DATA_BITS-1:0] u_values,
     input  wire fill_bank,
@@ -49,59 +52,273 @@ module sptfra_grid_search #(
     input  wire start,
     input  wire [39:0] stress_sum,
     input  wire [26:0] largest, // max |b|
-    // All of an orbit as it is first read: u_0 in the lowest bits
-    output wire read_valid,
-    output wire [ROW_WIDTH-1:0] read_orbit,
-    output wire [3*4*27-1:0] read_values,
+    // All of an orbit as it is first read, u_0 in the lowest bits
+    output reg  read_valid,
+    output reg  [ROW_WIDTH-1:0] read_orbit,
+    output reg  [3*4*27-1:0] read_values,
     // Result, held until the next start
     output wire done, // one cycle
     output wire signed [17:0] mu_x, // 16 fraction bits
     output wire signed [17:0] mu_y,
     output wire unknown, // nothing limits the friction
     output wire at_bound, // the least value lies on the border
-    output wire saturated // a value was clipped
+    output wire saturated // a u was clipped
 );
 
+    localparam integer ORBITS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2);
+    localparam integer LAST_ORBIT = ORBITS - 1;
+    localparam integer AT_ONCE = PARALLEL / SIDE; // rows of the grid
+    localparam integer IS_SERIAL = (AT_ONCE == 1) ? 1 : 0;
+    localparam integer TERM_BITS = FRACTION + 4;
     localparam integer VALUE_BITS = FRACTION + 2;
     localparam integer MARGIN_BITS = FRACTION - 7;
+    localparam integer STAGES = 10 + TAXELS; // from a taxel's address to its tension being added to the sums
+    localparam [1:0] STEP = TAXELS[1:0];
+    localparam [1:0] LAST_IMAGE = 2'd0 - STEP;
+    localparam [3:0] LAST_ROW = SIDE[3:0] - 4'd1;
 
-    wire [MARGIN_BITS-1:0] margin;
-    wire row_valid;
-    wire again;
-    wire [SIDE*VALUE_BITS-1:0] row_values;
+    if ((TAXELS != 1) && ((TAXELS != 2) || (IS_SERIAL != 0))) begin : gen_check_taxels
+        sptfra_error_one_taxel_a_cycle_or_two_with_all_points invalid ();
+    end
+    if ((PARALLEL != SIDE) && (PARALLEL != SIDE * SIDE)) begin : gen_check_parallel
+        sptfra_error_a_row_of_points_at_a_time_or_all_of_them invalid ();
+    end
 
-    sptfra_grid_values #(
-        .COLUMNS          (COLUMNS),
-        .ROWS             (ROWS),
-        .DATA_BITS        (DATA_BITS),
-        .ROW_WIDTH        (ROW_WIDTH),
-        .SIDE             (SIDE),
-        .PARALLEL         (PARALLEL),
-        .TAXELS           (TAXELS),
-        .FRACTION         (FRACTION),
-        .U_LEFT           (U_LEFT),
-        .EXPECTED_LATENCY (EXPECTED_VALUES_LATENCY)
-    ) values (
+    // ---- Taxels: the images of an orbit one after the other, or two. Index k: k cycles after the address
+    reg reading;
+    reg pausing; // a cycle from one row of the grid to the next
+    reg [3:0] pass; // serial: the row of the grid
+    reg [ROW_WIDTH-1:0] orbit;
+    reg [1:0] image;
+    reg [1:0] image_1;
+    reg [1:0] image_2;
+    wire last_taxel = (orbit == LAST_ORBIT[ROW_WIDTH-1:0]) && (image == LAST_IMAGE);
+    reg [STAGES:1] valids;
+    reg [STAGES:1] lasts;
+    wire [3*4*27-1:0] orbit_1;
+    wire [3*4*27-1:0] orbit_2 = read_values; // a register behind the memory, then the choice
+    wire [TAXELS*3*27-1:0] taxels_2;
+    reg [TAXELS*3*27-1:0] taxels_3;
+
+    sptfra_taxel_memory #(
+        .COLUMNS   (COLUMNS),
+        .ROWS      (ROWS),
+        .DATA_BITS (DATA_BITS),
+        .ROW_WIDTH (ROW_WIDTH)
+    ) taxels (
         .clock       (clock),
         .reset       (reset),
         .u_valid     (u_valid),
+        .fill_bank   (fill_bank),
         .u_orbit     (u_orbit),
         .u_values    (u_values),
-        .fill_bank   (fill_bank),
-        .search_bank (search_bank),
-        .start       (start),
-        .stress_sum  (stress_sum),
-        .largest     (largest),
-        .margin      (margin),
-        .read_valid  (read_valid),
-        .read_orbit  (read_orbit),
-        .read_values (read_values),
-        .row_valid   (row_valid),
-        .again       (again),
-        .row_values  (row_values),
-        .clipped     (saturated)
+        .read_bank   (search_bank),
+        .read_orbit  (orbit),
+        .read_values (orbit_1)
     );
 
+    always @(posedge clock) begin
+        if (reading) begin
+            image <= image + STEP;
+            orbit <= (image == LAST_IMAGE) ? orbit + 1'b1 : orbit;
+        end
+        if (reading && last_taxel) begin
+            reading <= 1'b0;
+            pausing <= (IS_SERIAL != 0) && (pass != LAST_ROW);
+        end
+        if (pausing) begin
+            pausing <= 1'b0;
+            reading <= 1'b1;
+            pass <= pass + 4'd1;
+        end
+        if (pausing || start) begin
+            orbit <= {ROW_WIDTH{1'b0}};
+            image <= 2'd0;
+        end
+        if (start) begin
+            reading <= 1'b1;
+            pausing <= 1'b0;
+            pass <= 4'd0;
+        end
+        image_1 <= image;
+        image_2 <= image_1;
+        taxels_3 <= taxels_2;
+        read_valid <= valids[1] && (image_1 == 2'd0) && (pass == 4'd0);
+        read_orbit <= orbit; // of the same: it is read for two cycles at least
+        read_values <= orbit_1;
+        valids <= {valids[STAGES-1:1], reading};
+        lasts <= {lasts[STAGES-1:1], reading && last_taxel};
+        if (reset) begin
+            reading <= 1'b0;
+            pausing <= 1'b0;
+            valids <= {STAGES{1'b0}};
+            lasts <= {STAGES{1'b0}};
+            read_valid <= 1'b0;
+        end
+    end
+
+    // ---- Their terms in each column and row of the grid
+    wire [TAXELS*SIDE*TERM_BITS-1:0] along_x_9;
+    wire [TAXELS*AT_ONCE*TERM_BITS-1:0] along_y_9;
+    wire [TAXELS*MARGIN_BITS-1:0] margins; // of the level set
+    wire [TAXELS-1:0] clips;
+    reg [3:0] pass_8; // of the terms that are formed
+
+    assign saturated = (clips != {TAXELS{1'b0}});
+
+    genvar index;
+    genvar column;
+    genvar taxel;
+
+    always @(posedge clock) begin
+        if (lasts[8]) begin
+            pass_8 <= pass_8 + 4'd1;
+        end
+        if (start) begin
+            pass_8 <= 4'd0;
+        end
+    end
+
+    for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_taxels
+        localparam [1:0] IMAGE = taxel;
+        wire [1:0] of_orbit_2 = image_2 | IMAGE;
+
+        for (index = 0; index < 3; index = index + 1) begin : gen_select
+            wire [4*27-1:0] of_q = orbit_2[4*27*index +: 4*27];
+
+            assign taxels_2[27*(3*taxel + index) +: 27] = of_q[27*of_orbit_2 +: 27];
+        end
+
+        sptfra_grid_terms #(
+            .SIDE     (SIDE),
+            .AT_ONCE  (AT_ONCE),
+            .FRACTION (FRACTION),
+            .U_LEFT   (U_LEFT)
+        ) terms (
+            .clock      (clock),
+            .reset      (reset),
+            .start      (start),
+            .stress_sum (stress_sum),
+            .largest    (largest),
+            .margin     (margins[MARGIN_BITS*taxel +: MARGIN_BITS]),
+            .valid      (valids[3]),
+            .u0         (taxels_3[27*(3*taxel + 0) +: 27]),
+            .u1         (taxels_3[27*(3*taxel + 1) +: 27]),
+            .u2         (taxels_3[27*(3*taxel + 2) +: 27]),
+            .row        (pass_8),
+            .along_x    (along_x_9[SIDE*TERM_BITS*taxel +: SIDE*TERM_BITS]),
+            .along_y    (along_y_9[AT_ONCE*TERM_BITS*taxel +: AT_ONCE*TERM_BITS]),
+            .clipped    (clips[taxel])
+        );
+    end
+
+    // ---- Evaluators. With one for each point, all rows move down by one for a row to leave, through the evaluators'
+    // own adders, and row 0 goes to the last one: no choice among rows, and no memory of them
+    reg giving;
+    reg [3:0] row;
+    reg turn; // this cycle
+    reg turn_next;
+    reg count_next;
+    reg nothing_8;
+    reg all_given;
+    wire again; // after the last row: the first one once more, three cycles later, and so on
+    wire turn_after_next = again || lasts[STAGES-1]
+        || ((IS_SERIAL == 0) && (lasts[STAGES] || (giving && (row < LAST_ROW - 4'd1))));
+    wire [AT_ONCE*SIDE*(VALUE_BITS+1)-1:0] sums;
+
+    for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_rows
+        for (column = 0; column < SIDE; column = column + 1) begin : gen_points
+            // Row 0 follows on the last one
+            localparam integer ABOVE = ((index == AT_ONCE - 1) ? 0 : SIDE*(index + 1)) + column;
+            wire [TAXELS*TERM_BITS-1:0] x;
+            wire [TAXELS*TERM_BITS-1:0] y;
+
+            for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_terms
+                assign x[TERM_BITS*taxel +: TERM_BITS] = along_x_9[TERM_BITS*(SIDE*taxel + column) +: TERM_BITS];
+                assign y[TERM_BITS*taxel +: TERM_BITS] = along_y_9[TERM_BITS*(AT_ONCE*taxel + index) +: TERM_BITS];
+            end
+
+            sptfra_grid_point #(
+                .TAXELS     (TAXELS),
+                .TERM_BITS  (TERM_BITS),
+                .VALUE_BITS (VALUE_BITS)
+            ) point (
+                .clock   (clock),
+                .clear   (start || ((IS_SERIAL != 0) && lasts[STAGES])),
+                .nothing (nothing_8),
+                .count   (count_next),
+                .turn    (turn_next && (IS_SERIAL == 0)),
+                .x       (x),
+                .y       (y),
+                .above   (sums[(VALUE_BITS+1)*ABOVE +: VALUE_BITS+1]),
+                .sum     (sums[(VALUE_BITS+1)*(SIDE*index + column) +: VALUE_BITS+1])
+            );
+        end
+    end
+
+    // ---- Rows, when all taxels are in
+    reg row_valid;
+    reg [SIDE*VALUE_BITS-1:0] row_values; // of the least mu_x in the lowest bits, held until the next row
+
+    always @(posedge clock) begin
+        turn_next <= turn_after_next;
+        count_next <= valids[STAGES-2] || (turn_after_next && (IS_SERIAL == 0));
+        nothing_8 <= !valids[7];
+        turn <= turn_next;
+        if (giving || (turn && all_given)) begin
+            row <= (row == LAST_ROW) ? 4'd0 : row + 4'd1;
+        end
+        if (giving && ((row == LAST_ROW) || (IS_SERIAL != 0))) begin
+            giving <= 1'b0;
+        end
+        if (giving && (row == LAST_ROW)) begin
+            all_given <= 1'b1;
+        end
+        if (lasts[STAGES]) begin
+            giving <= 1'b1;
+        end
+        if (start) begin
+            row <= 4'd0;
+            all_given <= 1'b0;
+        end
+        row_valid <= giving;
+        if (reset) begin
+            turn_next <= 1'b0;
+            giving <= 1'b0;
+            row_valid <= 1'b0;
+        end
+    end
+
+    wire [SIDE*VALUE_BITS-1:0] row_0;
+    wire [SIDE*VALUE_BITS-1:0] row_next;
+
+    for (column = 0; column < SIDE; column = column + 1) begin : gen_values
+        wire [VALUE_BITS:0] of_column = sums[(VALUE_BITS+1)*column +: VALUE_BITS+1];
+
+        assign row_0[VALUE_BITS*column +: VALUE_BITS] = of_column[VALUE_BITS-1:0]
+            | {VALUE_BITS{of_column[VALUE_BITS]}};
+    end
+    if (IS_SERIAL != 0) begin : gen_memory
+        (* ram_style = "distributed" *) reg [SIDE*VALUE_BITS-1:0] memory [0:15];
+
+        always @(posedge clock) begin
+            if (giving) begin
+                memory[row] <= row_0;
+            end
+        end
+
+        assign row_next = all_given ? memory[row] : row_0;
+    end else begin : gen_none
+        assign row_next = row_0;
+    end
+
+    always @(posedge clock) begin
+        if (turn) begin
+            row_values <= row_next;
+        end
+    end
+
+    // ---- Their level set
     sptfra_grid_level #(
         .SIDE             (SIDE),
         .AT_ONCE          ((TAXELS == 1) ? 5 : SIDE),
@@ -111,7 +328,7 @@ module sptfra_grid_search #(
         .clock      (clock),
         .reset      (reset),
         .start      (start),
-        .margin     (margin),
+        .margin     (margins[MARGIN_BITS-1:0]),
         .row_valid  (row_valid),
         .row_values (row_values),
         .again      (again),
@@ -121,6 +338,17 @@ module sptfra_grid_search #(
         .unknown    (unknown),
         .at_bound   (at_bound)
     );
+
+    sptfra_check_latency #(
+        .CYCLES (EXPECTED_VALUES_LATENCY)
+    ) check_latency (
+        .clock (clock),
+        .reset (reset),
+        .start (start),
+        .done  (row_valid)
+    );
+
+    wire _unused = &{1'b0, margins};
 
 endmodule
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The u_q of two frames by orbit: filled as they arrive, read an orbit a cycle. From read_orbit to the values: 1 cycle.
+// The u_q of two frames by orbit: filled as they arrive, read an orbit a cycle. From u_values to the memory: 1 cycle;
+// from read_orbit to the values: 1 cycle.
 //
 // On a centre line of the grid images of an orbit coincide: only the first of them counts, the others are zero.
 
@@ -18,6 +19,7 @@ module sptfra_taxel_memory #(
     parameter integer ROW_WIDTH = 5
 ) (
     input  wire clock,
+    input  wire reset,
     // u_q of an orbit's taxels, image 0 in the lowest bits
     input  wire [2:0] u_valid, // q, one-hot
     input  wire fill_bank,
@@ -29,6 +31,24 @@ module sptfra_taxel_memory #(
     output wire [3*4*27-1:0] read_values
 );
 
+    // ---- A register on the way to the memory
+    reg [2:0] valid;
+    reg bank;
+    reg [ROW_WIDTH-1:0] orbit;
+    reg [4*DATA_BITS-1:0] values;
+
+    always @(posedge clock) begin
+        valid <= u_valid;
+        bank <= fill_bank;
+        orbit <= u_orbit;
+        values <= u_values;
+        if (reset) begin
+            valid <= 3'd0;
+            bank <= 1'b0;
+        end
+    end
+
+    // ---- Memory, one for each q
     wire [3:0] counts;
     wire [4*27-1:0] wide;
 
@@ -37,14 +57,14 @@ module sptfra_taxel_memory #(
         .ROWS      (ROWS),
         .ROW_WIDTH (ROW_WIDTH)
     ) images (
-        .orbit  (u_orbit),
+        .orbit  (orbit),
         .counts (counts)
     );
 
     genvar index;
 
     for (index = 0; index < 4; index = index + 1) begin : gen_images
-        wire signed [DATA_BITS-1:0] value = u_values[DATA_BITS*index +: DATA_BITS];
+        wire signed [DATA_BITS-1:0] value = values[DATA_BITS*index +: DATA_BITS];
 
         assign wide[27*index +: 27] = counts[index]
             ? { {(28 - DATA_BITS){value[DATA_BITS-1]}}, value[DATA_BITS-2:0]} : 27'd0;
@@ -56,8 +76,8 @@ module sptfra_taxel_memory #(
             .ADDRESS_WIDTH (ROW_WIDTH + 1)
         ) of_q (
             .clock         (clock),
-            .write_enable  (u_valid[index]),
-            .write_address ({fill_bank, u_orbit}),
+            .write_enable  (valid[index]),
+            .write_address ({bank, orbit}),
             .write_data    (wide),
             .read_enable   (1'b1),
             .read_address  ({read_bank, read_orbit}),

@@ -178,7 +178,7 @@ impl EstimatorBlock for JointPlan {
     }
 
     fn without(&self) -> Vec<&'static str> {
-        if self.network.is_none() { vec!["sptfra_correction"] } else { Vec::new() }
+        if self.network.is_none() { vec!["sptfra_features", "sptfra_network"] } else { Vec::new() }
     }
 
     fn pitch(&self) -> Option<[i64; 2]> {
