@@ -19,7 +19,7 @@
 module sptfra_components #(
     // Taxels along x
     parameter COLUMNS = 10,
-    // Bits of |w|, and of a sum
+    // Bits of |w|, and of a sum, which has more
     parameter DATA_BITS = 27,
     parameter SUM_BITS = 34,
     // Bits of a label: the row, odd or even, and half the column
@@ -36,13 +36,6 @@ module sptfra_components #(
     // Components whose sum reaches least: at most 12 have 5/64 of all
     output reg  [3:0] contacts
 );
-
-    if ((COLUMNS < 2) || (COLUMNS > 64)) begin : gen_check_columns
-        sptfra_error_columns_must_be_2_to_64 invalid ();
-    end
-    if (SUM_BITS <= DATA_BITS) begin : gen_check_sum
-        sptfra_error_sums_must_be_wider_than_weights invalid ();
-    end
 
     // ---- Stage 1: the taxel's label. Seeds of the last row's steps, the newest in the lowest bits
     reg [COLUMNS:0] there;

@@ -40,39 +40,19 @@ module sptfra_contact_counter #(
     if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
         sptfra_error_channels_must_be_1_or_4 invalid ();
     end
+    if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
+        sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
+    end
 
     localparam SUM_BITS = DATA_BITS + $clog2(COLUMNS * ROWS) + 1;
     localparam LABEL_WIDTH = (COLUMNS > 4) ? $clog2((COLUMNS + 1) / 2) + 1 : 2;
     localparam [31:0] LAST_ELEMENT = ELEMENTS - 1;
 
-    // ---- Weights as they come: which frame they are of, their sum and the largest
+    // ---- Weights as they come: which frame they are of
     reg fill_bank;
     reg [ROW_WIDTH-1:0] filled;
     wire first_weights = (filled == {ROW_WIDTH{1'b0}});
     wire last_weights = weights_valid && (filled == LAST_ELEMENT[ROW_WIDTH-1:0]);
-    wire totals_there; // one cycle, with those of a frame
-    wire [SUM_BITS-1:0] total;
-    wire [DATA_BITS-1:0] largest;
-
-    sptfra_weight_totals #(
-        .CHANNELS  (CHANNELS),
-        .COLUMNS   (COLUMNS),
-        .ROWS      (ROWS),
-        .DATA_BITS (DATA_BITS),
-        .SUM_BITS  (SUM_BITS),
-        .ROW_WIDTH (ROW_WIDTH)
-    ) totals (
-        .clock   (clock),
-        .reset   (reset),
-        .valid   (weights_valid),
-        .first   (first_weights),
-        .last    (last_weights),
-        .row     (weights_row),
-        .weights (weights),
-        .there   (totals_there),
-        .total   (total),
-        .largest (largest)
-    );
 
     always @(posedge clock) begin
         if (weights_valid) begin
@@ -84,6 +64,93 @@ module sptfra_contact_counter #(
         if (reset) begin
             filled <= {ROW_WIDTH{1'b0}};
             fill_bank <= 1'b0;
+        end
+    end
+
+    // ---- Their sum and the largest, held until the next frame's first. Index k: k cycles after the weights
+    localparam IMAGES_BITS = DATA_BITS + 2; // of the sum of all images
+    reg [3:1] valids;
+    reg [3:1] firsts; // of a frame
+    reg [4:1] ends; // of its weights
+    reg [SUM_BITS-1:0] total;
+    reg [DATA_BITS-1:0] largest;
+    wire [IMAGES_BITS-1:0] sum_3; // of the images
+    wire [DATA_BITS-1:0] largest_3;
+    wire totals_there = ends[4]; // one cycle
+
+    always @(posedge clock) begin
+        valids <= {valids[2:1], weights_valid};
+        firsts <= {firsts[2:1], first_weights};
+        ends <= {ends[3:1], last_weights};
+        if (valids[3]) begin
+            total <= (firsts[3] ? {SUM_BITS{1'b0}} : total) + {{(SUM_BITS-IMAGES_BITS){1'b0}}, sum_3};
+            largest <= (firsts[3] || (largest_3 > largest)) ? largest_3 : largest;
+        end
+        if (reset) begin
+            valids <= 3'd0;
+            ends <= 4'd0;
+        end
+    end
+
+    if (CHANNELS == 4) begin : gen_orbits
+        // On a centre line of the grid images of an orbit are the same taxel, which counts once
+        wire [3:0] are_own;
+        reg [3:0] are_own_1;
+        reg [4*DATA_BITS-1:0] weights_1;
+        wire [4*IMAGES_BITS-1:0] own_1;
+        wire [2*IMAGES_BITS-1:0] sum_halves; // not needed
+        wire [2*DATA_BITS-1:0] largest_halves;
+        genvar index;
+
+        sptfra_orbit_images #(
+            .COLUMNS   (COLUMNS),
+            .ROWS      (ROWS),
+            .ROW_WIDTH (ROW_WIDTH)
+        ) images (
+            .orbit  (weights_row),
+            .counts (are_own)
+        );
+
+        always @(posedge clock) begin
+            are_own_1 <= are_own;
+            weights_1 <= weights;
+        end
+
+        for (index = 0; index < 4; index = index + 1) begin : gen_images
+            assign own_1[IMAGES_BITS*index +: IMAGES_BITS]
+                = are_own_1[index] ? {2'b00, weights_1[DATA_BITS*index +: DATA_BITS]} : {IMAGES_BITS{1'b0}};
+        end
+
+        sptfra_tree #(
+            .COUNT (4),
+            .WIDTH (IMAGES_BITS)
+        ) sum_of_images (
+            .clock   (clock),
+            .numbers (own_1),
+            .halves  (sum_halves),
+            .result  (sum_3)
+        );
+
+        sptfra_tree #(
+            .COUNT   (4),
+            .WIDTH   (DATA_BITS),
+            .LARGEST (1)
+        ) largest_of_images (
+            .clock   (clock),
+            .numbers (weights_1),
+            .halves  (largest_halves),
+            .result  (largest_3)
+        );
+
+        wire _unused = &{1'b0, sum_halves, largest_halves};
+    end else begin : gen_taxels
+        reg [3*DATA_BITS-1:0] passing; // in as many stages
+
+        assign sum_3 = {2'b00, largest_3};
+        assign largest_3 = passing[2*DATA_BITS +: DATA_BITS];
+
+        always @(posedge clock) begin
+            passing <= {passing[2*DATA_BITS-1:0], weights};
         end
     end
 

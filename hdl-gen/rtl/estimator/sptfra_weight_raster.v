@@ -38,10 +38,6 @@ module sptfra_weight_raster #(
     output wire last
 );
 
-    if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
-        sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
-    end
-
     localparam X_WIDTH = $clog2(COLUMNS + 1);
     localparam Y_WIDTH = $clog2(ROWS);
     localparam [31:0] BORDER = COLUMNS;

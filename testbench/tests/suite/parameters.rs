@@ -7,7 +7,7 @@ use testbench::tools;
 use crate::support::{library_file, library_folders, look_in};
 
 /// Module, parameter, value, what the tool must name. A value that several modules share is looked at in one of them.
-const SENSELESS: [(&str, &str, &str, &str); 26] = [
+const SENSELESS: [(&str, &str, &str, &str); 23] = [
     ("bz", "COLUMNS", "1", "columns_and_rows_must_be_2_to_64"),
     ("frame_writer", "DATA_BITS", "36", "data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded"),
     ("frame_writer", "SAMPLES", "3", "samples_of_a_beat_must_be_1_2_4_or_8"),
@@ -21,10 +21,7 @@ const SENSELESS: [(&str, &str, &str, &str); 26] = [
     ("spmv_lane", "COEFFICIENT_BITS", "28", "two_multipliers_have_27_by_35_bits"),
     ("spmv_array", "LASTS", "1", "the_last_product_must_end_its_program"),
     ("contact_counter", "CHANNELS", "2", "channels_must_be_1_or_4"),
-    ("weight_raster", "ROWS", "1", "columns_and_rows_must_be_2_to_64"),
-    ("weight_totals", "SUM_BITS", "29", "sums_must_have_three_bits_more_than_weights"),
-    ("components", "COLUMNS", "65", "columns_must_be_2_to_64"),
-    ("components", "SUM_BITS", "27", "sums_must_be_wider_than_weights"),
+    ("contact_counter", "ROWS", "1", "columns_and_rows_must_be_2_to_64"),
     ("program_scheduler", "PROGRAMS", "4", "programs_must_be_1_to_3"),
     ("program_scheduler", "RESIDUALS", "3", "one_or_two_residuals_have_a_buffer"),
     ("op", "SLIP_RELEASE", "1", "a_slip_ends_below_its_limit"),

@@ -150,7 +150,7 @@ fn faults_are_noticed() {
         ("sptfra_components", "(joined_2 >= least)", "1'b0"),
         ("sptfra_components", "was_contact && !begins_3", "was_contact"),
         ("sptfra_weight_raster", "!borders[3] && (weight_3 > limit)", "(weight_3 > limit)"),
-        ("sptfra_weight_totals", "counts_1[index] ?", "1'b1 ?"),
+        ("sptfra_contact_counter", "are_own_1[index] ?", "1'b1 ?"),
         ("sptfra_contact_counter", "left + {3'd0, done}", "left"),
     ];
     let faults = some_faults(faults, |&(module, from, _)| (module, from));
