@@ -28,10 +28,6 @@ module sptfra_grid_centroid #(
     output reg  signed [17:0] mu_y
 );
 
-    if ((AT_ONCE != 5) && ((AT_ONCE != SIDE) || (AT_ONCE < 11) || (AT_ONCE > 15))) begin : gen_check
-        sptfra_error_five_points_come_in_a_cycle_or_a_row_of_11_to_15 invalid ();
-    end
-
     localparam integer REACH = SIDE / 2;
     localparam integer FIVES = (AT_ONCE + 4) / 5;
     localparam integer GROUPS = (SIDE + AT_ONCE - 1) / AT_ONCE; // of a row

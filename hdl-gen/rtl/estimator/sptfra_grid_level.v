@@ -50,10 +50,6 @@ module sptfra_grid_level #(
     localparam integer LEAVES = 1 << LEVELS;
     localparam integer MIN_STAGES = LEVELS + 1; // from a row to its least values being kept
 
-    if (((SIDE != 11) && (SIDE != 13)) || (WEIGHT_DROP < 1) || (MARGIN_BITS > 17)) begin : gen_check
-        sptfra_error_a_side_has_11_or_13_points_and_a_value_20_to_24_bits_of_fraction invalid ();
-    end
-
     // ---- Rows as they come: the least values inside and on the border are kept
     reg [3:0] row_in;
     wire outer_row = (row_in == 4'd0) || (row_in == LAST_ROW);

@@ -77,6 +77,9 @@ module sptfra_grid_search #(
     localparam [1:0] LAST_IMAGE = 2'd0 - STEP;
     localparam [3:0] LAST_ROW = SIDE[3:0] - 4'd1;
 
+    if (((SIDE != 11) && (SIDE != 13)) || (FRACTION < 20) || (FRACTION > 24)) begin : gen_check_points
+        sptfra_error_a_side_has_11_or_13_points_and_a_value_20_to_24_bits_of_fraction invalid ();
+    end
     if ((TAXELS != 1) && ((TAXELS != 2) || (IS_SERIAL != 0))) begin : gen_check_taxels
         sptfra_error_one_taxel_a_cycle_or_two_with_all_points invalid ();
     end

@@ -12,7 +12,7 @@
 `default_nettype none
 
 module sptfra_grid_terms #(
-    // Points along an axis, 11 or 13; the generator sets 13
+    // Points along an axis, 11 or 13: with more a term would be wider
     parameter integer SIDE = 13,
     // Rows of the grid whose Y is wanted: SIDE, or 1
     parameter integer AT_ONCE = SIDE,
@@ -53,11 +53,6 @@ module sptfra_grid_terms #(
     localparam integer MULTIPLES = 7; // of a step: 0 to 6
     localparam integer MULTIPLE_BITS = U_BITS + 3;
     localparam integer WIDE_BITS = TERM_BITS + STEP_SHIFT; // before the fraction is dropped
-
-    // With more points a term would be wider
-    if (((SIDE != 11) && (SIDE != 13)) || ((AT_ONCE != 1) && (AT_ONCE != SIDE))) begin : gen_check
-        sptfra_error_a_side_has_11_or_13_points_all_rows_or_one invalid ();
-    end
 
     // ---- Scale of the frame: the bits of sum |b|, there three cycles after start
     wire [5:0] sum_bits;

@@ -57,9 +57,6 @@ module sptfra_search_cells #(
     localparam integer GROUPS = CELLS / CHANNELS;
     localparam integer LAST_COUNT = ELEMENTS - (GROUPS - 1) * CELL_ELEMENTS;
 
-    if ((CHANNELS != 1) && (CHANNELS != 4)) begin : gen_check_channels
-        sptfra_error_channels_must_be_1_or_4 invalid ();
-    end
     if ((CELLS % CHANNELS != 0) || (LAST_COUNT < 1) || (LAST_COUNT > CELL_ELEMENTS)) begin : gen_check_cells
         sptfra_error_cells_do_not_hold_the_taxels invalid ();
     end
