@@ -55,8 +55,8 @@ module sptfra_estimator_joint #(
     parameter ROM_NAME = "",
     // Checked in simulation, 0: unchecked: cycles from the start to the first row of points
     parameter integer EXPECTED_VALUES_LATENCY = 0,
-    // ... from that row to the centroid
-    parameter integer EXPECTED_LEVEL_LATENCY = 0,
+    // ... to the centroid
+    parameter integer EXPECTED_SEARCH_LATENCY = 0,
     // ... from the centroid to the contact's centre
     parameter integer EXPECTED_FEATURES_LATENCY = 0,
     // ... from the first input of the network to the correction
@@ -194,7 +194,7 @@ module sptfra_estimator_joint #(
         .FRACTION                (FRACTION),
         .U_LEFT                  (U_LEFT),
         .EXPECTED_VALUES_LATENCY (EXPECTED_VALUES_LATENCY),
-        .EXPECTED_LEVEL_LATENCY  (EXPECTED_LEVEL_LATENCY)
+        .EXPECTED_LATENCY        (EXPECTED_SEARCH_LATENCY)
     ) search (
         .clock       (clock),
         .reset       (reset),

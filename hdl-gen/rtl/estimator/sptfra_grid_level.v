@@ -18,7 +18,7 @@ module sptfra_grid_level #(
     parameter integer AT_ONCE = 5,
     // Bits of a value below the leading bit of sum |b|
     parameter integer FRACTION = 21,
-    // From the first row to done, checked in simulation; 0: unchecked
+    // From start to done, checked in simulation; 0: unchecked
     parameter integer EXPECTED_LATENCY = 0,
     // Derived: bits of a value, and of the margin
     parameter integer VALUE_BITS = FRACTION + 2,
@@ -256,29 +256,14 @@ module sptfra_grid_level #(
         .mu_y    (mu_y)
     );
 
-`ifdef SIMULATION
-    reg awaited; // the first row of a frame
-
-    always @(posedge clock) begin
-        if (row_valid) begin
-            awaited <= 1'b0;
-        end
-        if (start) begin
-            awaited <= 1'b1;
-        end
-    end
-
     sptfra_check_latency #(
         .CYCLES (EXPECTED_LATENCY)
     ) check_latency (
         .clock (clock),
         .reset (reset),
-        .start (row_valid && awaited),
+        .start (start),
         .done  (done)
     );
-`else
-    wire _unused_check = (EXPECTED_LATENCY != 0);
-`endif
 
 endmodule
 

@@ -37,8 +37,8 @@ module sptfra_grid_search #(
     parameter integer U_LEFT = 22,
     // Checked in simulation, 0: unchecked: cycles from the start to the first row of points
     parameter integer EXPECTED_VALUES_LATENCY = 0,
-    // ... from that row to the centroid
-    parameter integer EXPECTED_LEVEL_LATENCY = 0
+    // ... to the centroid
+    parameter integer EXPECTED_LATENCY = 0
 ) (
     input  wire clock,
     input  wire reset,
@@ -326,7 +326,7 @@ module sptfra_grid_search #(
         .SIDE             (SIDE),
         .AT_ONCE          ((TAXELS == 1) ? 5 : SIDE),
         .FRACTION         (FRACTION),
-        .EXPECTED_LATENCY (EXPECTED_LEVEL_LATENCY)
+        .EXPECTED_LATENCY (EXPECTED_LATENCY)
     ) level_set (
         .clock      (clock),
         .reset      (reset),

@@ -39,6 +39,7 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
         design
     };
     let late_settled = late("settled", "(state == MEASURE)");
+    let late_centroid = late("done", "divide_done");
     let cases = [
         // The collector does not keep up with the lanes.
         (paper(), "sptfra_spmv_collector", "slot_known && !separated", "slot_known && separated", "spmv_pe.v"),
@@ -86,6 +87,7 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
         (reduced(), "sptfra_line", "(step == 4'd14)", "(step == 4'd15)", "check_latency.v"),
         (joint(), "sptfra_cean", "settled <= (state == MEASURE);", &late_settled, "check_latency.v"),
         (joint(), "sptfra_grid_search", "row_valid <= giving;", "row_valid <= lasts[STAGES];", "check_latency.v"),
+        (joint(), "sptfra_grid_centroid", "done <= divide_done;", &late_centroid, "check_latency.v"),
         (joint(), "sptfra_friction", "running && (step == 5'd17);", "running && (step == 5'd16);", "check_latency.v"),
         (shipped("sensor1-fast"), "sptfra_network", "== SUMMING[4:0])", "== SUMMING[4:0] + 5'd1)", "check_latency.v"),
         (

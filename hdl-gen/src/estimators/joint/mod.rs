@@ -155,7 +155,7 @@ impl EstimatorBlock for JointPlan {
             .signed("CUBIC", SHORT_BITS, self.cubic)
             .flag("NETWORK", self.network.is_some())
             .cycles("EXPECTED_VALUES_LATENCY", self.search.first_row(&design.sensor))
-            .cycles("EXPECTED_LEVEL_LATENCY", self.search.level(&design.sensor))
+            .cycles("EXPECTED_SEARCH_LATENCY", self.search.cycles(&design.sensor))
             .cycles(
                 "EXPECTED_FRICTION_LATENCY",
                 if self.network.is_some() { timing::CORRECTED } else { timing::FRICTION },
