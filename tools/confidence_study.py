@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""How well could a frame tell its own error? confidence_study.py SPTFRA OUT.csv
+"""Standard error by a network on the whole frame: confidence_study.py SPTFRA OUT.csv
 
-A network on the whole frame learns the size of a shipped design's error, from kinds of contact and noises that it is
-then judged on, with other contacts. It is the limit for a standard error that does not know the kind. Takes minutes.
+The network learns the size of a shipped design's error from kinds of contact and noises. It is judged on other contacts
+of the same kinds. So it estimates how good a standard error can be that does not know the kind. Takes minutes.
 """
 
 import os
@@ -30,9 +30,9 @@ UNITS, STEPS, BATCH = 96, 6000, 256
 REACH = 6.0
 
 HEAD = """\
-# Percent of errors of the tangential force within one and two standard errors, were these the best a frame tells.
-# A network of two layers of {units} units sees the whole frame and is told its noise. It learns the size of the design's
-# error from {trained} contacts of each kind at each noise, and is judged on {judged} others. Goal: 55 to 72, and 94 or more.
+# Percent of errors of the tangential force within one and two standard errors, with one that a network predicts from the
+# whole frame. The network has two layers of {units} units and knows the noise. It learns the size of the design's error
+# from {trained} contacts of each kind at each noise, and is judged on {judged} others. Goal: 55 to 72, and 94 or more.
 # noise: standard deviation in percent of the largest reading of a frame. The designs' own s: confidence.csv.
 # command: python3 tools/confidence_study.py SPTFRA results/confidence-study.csv
 # designs (SHA-256 of file and weights): {designs}
@@ -40,7 +40,7 @@ design,noise,kind,within_one,within_two
 """
 
 
-def seen(sptfra, design, count, seed, folder):
+def samples(sptfra, design, count, seed, folder):
     """Inputs (n, taxels + 1), errors in percent of the normal force, and numbers of noise and kind, of all frames."""
     random, inputs, found, labels = np.random.default_rng(seed), [], [], []
     for at, kind in enumerate(KINDS):
@@ -114,8 +114,8 @@ def main() -> None:
     for name in DESIGNS:
         design, random = ROOT / f"designs/{name}.toml", np.random.default_rng(1)
         with tempfile.TemporaryDirectory() as folder:
-            inputs, found, _ = seen(sptfra, design, TRAINED, TRAINED_SEED, Path(folder))
-            judged, errors, labels = seen(sptfra, design, JUDGED, JUDGED_SEED, Path(folder))
+            inputs, found, _ = samples(sptfra, design, TRAINED, TRAINED_SEED, Path(folder))
+            judged, errors, labels = samples(sptfra, design, JUDGED, JUDGED_SEED, Path(folder))
         mean = (found**2).mean()
         inputs, squares = mirrored(inputs), np.tile(found**2 / mean, 4)
         predictor = Predictor(inputs, random)

@@ -245,11 +245,9 @@ module harness (
 
     genvar stage;
     assign ats[7*11 +: 7] = {leaving, place};
-    generate
-        for (stage = 1; stage < 12; stage = stage + 1) begin : gen_places
-            assign ats[7*(stage-1) +: 7] = valid[stage] ? after(ats[7*stage +: 7]) : ats[7*stage +: 7];
-        end
-    endgenerate
+    for (stage = 1; stage < 12; stage = stage + 1) begin : gen_places
+        assign ats[7*(stage-1) +: 7] = valid[stage] ? after(ats[7*stage +: 7]) : ats[7*stage +: 7];
+    end
     assign next = issued ? after(at_0) : at_0;
 
     wire [FRAME-1:0] held = holding[0] ? odd : even;
@@ -291,39 +289,37 @@ module harness (
         end
     end
 
-    generate
-        for (stage = 1; stage < 12; stage = stage + 1) begin : gen_stages
-            wire [6:0] here = ats[7*stage +: 7];
+    for (stage = 1; stage < 12; stage = stage + 1) begin : gen_stages
+        wire [6:0] here = ats[7*stage +: 7];
 
+        always @(*) begin
+            if (started && valid[stage]) begin
+                assert (lasts[stage] == (here[4:0] == LAST));
+            end
+        end
+        if (stage < 4) begin : gen_choice
             always @(*) begin
                 if (started && valid[stage]) begin
-                    assert (lasts[stage] == (here[4:0] == LAST));
+                    assert (in_field[stage] == (here[4:0] > 5'd15));
+                    assert (blanks[stage] == (here[5] ? odd[85] : even[85]));
                 end
             end
-            if (stage < 4) begin : gen_choice
-                always @(*) begin
-                    if (started && valid[stage]) begin
-                        assert (in_field[stage] == (here[4:0] > 5'd15));
-                        assert (blanks[stage] == (here[5] ? odd[85] : even[85]));
-                    end
-                end
-            end else begin : gen_raw
-                always @(*) begin
-                    if (started && valid[stage]) begin
-                        assert (raws[stage] == is_raw(here[4:0]));
-                    end
-                end
-            end
-            if (stage > 4) begin : gen_word
-                always @(*) begin
-                    if (started && valid[stage]) begin
-                        assert (right(here[6:5], here[4:0],
-                            raws[stage] ? raw_words[32*(stage-5) +: 32] : stages[32*(stage-5) +: 32]));
-                    end
+        end else begin : gen_raw
+            always @(*) begin
+                if (started && valid[stage]) begin
+                    assert (raws[stage] == is_raw(here[4:0]));
                 end
             end
         end
-    endgenerate
+        if (stage > 4) begin : gen_word
+            always @(*) begin
+                if (started && valid[stage]) begin
+                    assert (right(here[6:5], here[4:0],
+                        raws[stage] ? raw_words[32*(stage-5) +: 32] : stages[32*(stage-5) +: 32]));
+                end
+            end
+        end
+    end
 `endif
 
 endmodule

@@ -15,8 +15,8 @@ const HANDED: f64 = 0.3;
 /// More broken taxels than one of so many are another kind of sensor than the design says.
 const ONE_OF: usize = 20;
 
-/// Looks for broken taxels in frames of values as they are in the file and of pascals: a message, and the frames with the
-/// mean of their neighbours in their places.
+/// Finds broken taxels. Returns a message, and the frames with the mean of the neighbours in their place. `frames` are as in
+/// the file, `stress` is in pascals.
 pub(super) fn check(design: &Design, frames: &[Vec<f64>], stress: &[Vec<f64>]) -> Option<(String, Vec<Vec<f64>>)> {
     let taxels = design.sensor.taxels();
     if frames.len() < FRAMES {

@@ -61,8 +61,8 @@ fn noise(sensor: &Sensor, stress: &[Vec<f64>], is_loaded: &[bool]) -> Option<(us
     holds(noise, loaded.len()).then_some((noise, loaded.len(), mean))
 }
 
-/// Of frames in which all taxels stay where they are, but for noise of each: the largest offset, 0 where there is none, and
-/// the mean magnitude of what varies, in pascals.
+/// Frames in which no taxel moves but for its noise. Returns the largest offset (0: none) and the mean magnitude of the
+/// noise, in pascals.
 fn still(sensor: &Sensor, stress: &[Vec<f64>], full_scale: f64) -> Option<(f64, f64)> {
     if stress.len() < FRAMES {
         return None;

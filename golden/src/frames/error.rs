@@ -85,13 +85,13 @@ impl FrameError {
         Self::Wrong(format!("{}, {place}: {problem}", path.display()))
     }
 
-    /// What is wrong with a line, from 1: as with lines or columns that do not fit the sensor.
     /// A cell that is no finite number.
     pub(crate) fn value(path: &Path, [line, column]: [usize; 2], cell: &[u8], remedy: impl Into<String>) -> Self {
         let text = String::from_utf8_lossy(cell).chars().take(40).collect();
         Self::Value { path: path.to_path_buf(), line, column, text, remedy: remedy.into() }
     }
 
+    /// What is wrong with a line, from 1: as with lines or columns that do not fit the sensor.
     pub(crate) fn line(path: &Path, line: usize, problem: impl Display) -> Self {
         Self::at(path, format_args!("line {line}"), problem)
     }

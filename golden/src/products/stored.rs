@@ -22,6 +22,7 @@ pub trait Stored<const W: usize> {
     fn arm_m(&self, taxel: usize) -> [f64; 2];
 }
 
+/// Two folded vectors.
 pub type Quarters<T> = [Vec<[T; COMPONENTS]>; 2];
 
 impl Stored<4> for ReducedMatrices {

@@ -45,8 +45,7 @@ impl Field {
         Self { load: PointLoad::of(medium), depth_m, places, per_taxel: within.len(), points, sensor: sensor.clone() }
     }
 
-    /// Adds to sums of a taxel's stress what loads make of it; `of` makes the parts from the stress that one load's normal
-    /// and tangential force cause.
+    /// Adds the stress of loads at a taxel to `sums`. `of` maps a load's normal and tangential stress to the parts.
     fn sum<const N: usize>(
         &self,
         taxel: usize,

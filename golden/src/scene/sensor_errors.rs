@@ -54,10 +54,10 @@ impl Converter {
 impl SensorErrors {
     /// Applies the errors to frame number `frame`, in place.
     pub(super) fn apply(&self, frame: usize, stress: &mut [f64]) {
-        // A stream for the gains and one for each frame: a frame does not depend on how many there are before it.
         for value in &mut *stress {
             *value = self.tension.of(*value);
         }
+        // A stream for the gains and one for each frame: a frame does not depend on how many there are before it.
         if self.gain_spread > 0.0 {
             let mut gains = stream(self.seed, 0);
             for value in &mut *stress {

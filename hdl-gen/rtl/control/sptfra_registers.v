@@ -3,8 +3,8 @@
 //
 // The registers behind the AXI4-Lite port: what the design is, soft reset, status, interrupts, counters.
 //
-// Reads answer in the same cycle. Frames are counted and their cycles measured from the handshakes of the core's two
-// streams; sixteen frames may be inside. A soft reset clears the counters. Interrupts and the rate of the average stay.
+// Reads answer in the same cycle. Counts frames and measures their cycles at the core's two streams. Sixteen frames may
+// be inside. A soft reset clears the counters. Interrupts and the rate of the average stay.
 // The map is that of the design's control/NAME.rdl.
 
 `default_nettype none

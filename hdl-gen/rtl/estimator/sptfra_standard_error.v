@@ -7,7 +7,7 @@
 // Noise that is alike in all frames has a typical contact's LARGEST, scaled as the frame is, in place of largest.
 // |x, y| is max(x, y, 7/8 of the larger + 1/2 of the smaller). No multiplier: each bit of a quotient adds its weight.
 // The noise left is the root of the variance; its bits, as they are found, add up NOISE. Without averages it is 1.
-// Latency: 56 cycles from start to the result, which holds until the next start.
+// stress_sum is not 0. Latency: 56 cycles from start to the result, which holds until the next start.
 
 `default_nettype none
 
@@ -39,8 +39,8 @@ module sptfra_standard_error #(
 
     reg busy;
     reg [5:0] step;
-    // ---- Two quotients, the border's first, a bit a cycle, without restoring: a remainder's sign is the bit, and says
-    // whether the divisor is added or subtracted next
+    // ---- Two quotients by non-restoring division, a bit a cycle, the border's first. A remainder that is not negative
+    // makes the bit 1, and the divisor is subtracted next. Else it is added
     reg [39:0] divisor;
     reg [40:0] part; // the dividend
     reg [41:0] remainder;

@@ -5,8 +5,8 @@
 // times.
 //
 // A start pulse runs one program: products that follow each other at fixed distances. issued marks the last issue of a
-// program. The next start may come in the cycle after that. Control passes one register on its way to the PEs; so do
-// writes on theirs to the operand memories.
+// program. The next start may come in the cycle after that. Control takes one register to the PEs, writes take
+// one to the operand memories.
 
 `default_nettype none
 

@@ -41,7 +41,7 @@ module sptfra_spmv_pe #(
 ) (
     input  wire clock,
     input  wire reset,
-    // From the sequencer
+    // From the array's control
     input  wire restart, // with the addresses of a program's data
     input  wire [WORD_WIDTH-1:0] start_word,
     input  wire restart_segment, // one cycle before, with

@@ -1,4 +1,4 @@
-//! The array of SpMV lanes with its sequencer and its collector: `sptfra_spmv_array`.
+//! The array of SpMV PEs, which issues the products, and its collector: `sptfra_spmv_array`.
 
 use crate::format::address_bits;
 use crate::parameters::Parameters;

@@ -5,7 +5,8 @@ pub const fn latency(bits: u32) -> u64 {
     bits as u64 + 1
 }
 
-/// What `sptfra_ratio` answers: `numerator / denominator` rounded down, all ones for a denominator of zero.
+/// One quotient of `sptfra_ratio`, rounded down. The numerator is already shifted left by the fraction bits. All ones for a
+/// denominator of zero, of which the port shows the low bits.
 pub fn divide(numerator: u64, denominator: u64) -> u64 {
     numerator.checked_div(denominator).unwrap_or(u64::MAX)
 }

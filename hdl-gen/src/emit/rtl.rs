@@ -29,7 +29,7 @@ pub fn library(multiplier: Multiplier) -> BTreeMap<&'static str, &'static str> {
 }
 
 /// The modules of the library that `texts` instantiate, and those that these do, but for what `without` names. That
-/// stands only in a `generate if` that neither the design takes nor the default parameters, which Yosys elaborates too.
+/// stands only in a conditional block that neither the design takes nor the default parameters, which Yosys elaborates too.
 pub fn used_by<'a>(
     texts: impl Iterator<Item = &'a str>,
     without: &[&str],

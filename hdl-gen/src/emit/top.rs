@@ -161,7 +161,7 @@ pub(super) fn render(plan: &Plan, debug: bool) -> Result<(String, String), EmitE
     Ok((module, text))
 }
 
-/// Modules of the library that stand only in a `generate if` that neither the design takes nor the default parameters.
+/// Modules of the library that stand only in a conditional block that neither the design takes nor the default parameters.
 pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     let curve = plan.design.input.curve.is_some();
     let calibration = plan.calibration.as_ref();

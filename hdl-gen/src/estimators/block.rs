@@ -147,7 +147,7 @@ pub trait EstimatorBlock {
     /// The parameters of its instance, for values that arrive `channels` at a time.
     fn parameters(&self, design: &Design, channels: usize) -> Parameters;
 
-    /// Modules of the library that stand only in a `generate if` that these parameters do not take.
+    /// Modules of the library that stand only in a conditional block that these parameters do not take.
     fn without(&self) -> Vec<&'static str> {
         Vec::new()
     }

@@ -8,7 +8,7 @@ use std::collections::{BTreeSet, VecDeque};
 use super::buffers::{FIELD_BUFFERS, INGRESS_FRAMES};
 use super::durations::{Arrival, Durations};
 use super::latency::{
-    self, OUTPUT_LATENCY, OUTPUT_SKID, OUTPUT_TO_IDLE, OUTPUT_TO_RELEASE, SEARCH_TO_FRICTION, SEQUENCER_TO_LANES,
+    self, CONTROL_TO_LANES, OUTPUT_LATENCY, OUTPUT_SKID, OUTPUT_TO_IDLE, OUTPUT_TO_RELEASE, SEARCH_TO_FRICTION,
     SUMMARY_LATENCY, TAKE_TO_RESIDUAL, TAXELS_TO_CELLS, TAXELS_TO_FIELD,
 };
 use super::timeline::{INTERVAL_FRAMES, Timeline, mean_interval};
@@ -368,7 +368,7 @@ impl Control {
         let program = &self.of.programs[index];
         let first_issue = self.first_issue(index);
         self.writes.extend(program.writes.iter().map(|cycle| first_issue + cycle));
-        self.lanes_free = first_issue + program.length - 1 - SEQUENCER_TO_LANES;
+        self.lanes_free = first_issue + program.length - 1 - CONTROL_TO_LANES;
         first_issue + program.last_slot
     }
 

@@ -60,12 +60,12 @@ pub fn frame_scale(samples: usize) -> u64 {
 pub const TAXEL_TO_CEAN: u64 = 2;
 
 // ---- The array of lanes
-/// From the sequencer's control to the lanes' and the collector's: the register on the way.
-pub const SEQUENCER_TO_LANES: u64 = 1;
+/// From the array's control to its PEs and its collector: a register.
+pub const CONTROL_TO_LANES: u64 = 1;
 /// From a program's start pulse to its first issue, in the lanes, where `gap` cycles pass without issue from one program
 /// to the next.
 pub fn start_to_issue(gap: u64) -> u64 {
-    2 + SEQUENCER_TO_LANES + gap - PROGRAM_GAP
+    2 + CONTROL_TO_LANES + gap - PROGRAM_GAP
 }
 
 /// Without issue when the lanes pass from one program to the next, at least.

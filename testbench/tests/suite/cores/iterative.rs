@@ -52,14 +52,16 @@ impl<R: Copy, const N: usize> Player<R, N> {
         let gap = [0, 0, 1, 5][self.rng.random_range(0..4)];
         self.idle(gap, false);
         if self.rng.random_ratio(1, 100) {
-            // An operation given up leaves no done behind.
+            // An operation given up leaves no done behind: by a reset, or by the next start where that counts.
             let other = (self.junk)(&mut self.rng);
             self.cycle(false, true, other);
             self.held = None;
             let before = self.rng.random_range(0..self.latency - 1);
             self.busy(before);
-            self.idle(1, true);
-            self.idle(3, false);
+            if !self.takes_any_start || self.rng.random_bool(0.5) {
+                self.idle(1, true);
+                self.idle(3, false);
+            }
         }
         self.cycle(false, true, operands);
         self.held = self.held.filter(|_| self.keeps_result);
@@ -67,11 +69,6 @@ impl<R: Copy, const N: usize> Player<R, N> {
         (self.held, self.done) = (Some(result), true);
         self.run.results += 1;
     }
-}
-
-fn wide(rng: &mut ChaCha8Rng) -> u64 {
-    let width = rng.random_range(0..64);
-    rng.random::<u64>() >> width
 }
 
 pub fn ratio() -> Run {
@@ -110,12 +107,12 @@ pub fn ratio() -> Run {
         }
     }
     for _ in 0..10_000 {
-        let denominator = wide(&mut player.rng) >> (64 - WIDTH);
+        let any = |rng: &mut ChaCha8Rng| rng.random::<u64>() >> rng.random_range(64 - WIDTH..64);
+        let denominator = any(&mut player.rng);
         let mut numerator = || {
             // Next to a multiple of the denominator one unit decides the last digit.
             let near = (denominator * player.rng.random_range(0..64)).saturating_sub(player.rng.random_range(0..2));
-            let any = wide(&mut player.rng) >> (64 - WIDTH);
-            let value = if player.rng.random_bool(0.2) { near } else { any };
+            let value = if player.rng.random_bool(0.2) { near } else { any(&mut player.rng) };
             value.min(largest).min((denominator << INTEGER_BITS).saturating_sub(1))
         };
         let operands = [numerator(), numerator(), denominator];
