@@ -6,8 +6,8 @@ Yosys elaborates a design. Its modules are then mapped with black boxes as child
 is mapped to stays in target/synth/modules, by a hash of its RTLIL without numbers of lines. So designs share modules,
 and after a change of the Verilog only modules that differ are mapped again.
 
-LUTs and carry chains of a module vary a little with what else is in the run, because Yosys orders cells by numbers that
-names get in turn. Flip-flops, multipliers and block memories do not.
+A module is mapped in a run of its own. In company its LUTs vary by half, because Yosys orders cells by numbers that names
+get in turn.
 
 The cells stand beside the generator's prediction. The levels of logic of a block's longest way may not be more than
 xtask/levels.toml has; RECORD=1 writes them there.
@@ -22,6 +22,7 @@ import re
 import subprocess
 import sys
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parent.parent
@@ -34,8 +35,6 @@ MAP = """
     read_verilog -lib +/xilinx/cells_xtra.v
     synth_xilinx -family xcup -noiopad -noclkbuf -run prepare:
     select *"""
-# Lines of RTLIL in a run, of which each reads Yosys' library: nine seconds.
-LINES = 8000
 # What does not change what a module is mapped to.
 UNUSED = re.compile(r"(?m)^ *attribute \\(?:src|hdlname|dynports|module_not_derived|top) .*\n|^  parameter .*\n")
 # A name that Yosys made of a line in the source and a number.
@@ -109,23 +108,23 @@ def elaborate(work, design):
 
 
 def synthesise(design, modules):
-    """Maps modules, some in a run."""
-    missing = list({module.name: module for module in modules if not module.mapped.exists()}.values())
-    while missing:
-        some, lines = [], 0
-        while missing and lines < LINES:
-            some.append(missing.pop())
-            lines += some[-1].text.count("\n")
-        kinds = ", ".join(sorted({module.kind.removeprefix("sptfra_") for module in some}))
-        print(f"{design}: Yosys is at work on {kinds} ({len(some)} modules; {len(missing)} are left)", flush=True)
-        boxes = {name: box for module in some for name, box in module.boxes.items()}
-        (SYNTH / "modules.il").write_text("".join([module.text for module in some] + list(boxes.values())))
-        yosys("modules.yosys.log", f"read_rtlil modules.il{MAP}; write_json -selected modules.json")
-        mapped = json.loads((SYNTH / "modules.json").read_text())["modules"]
-        for module in some:
-            part = module.mapped.with_suffix(".part")
-            part.write_text(json.dumps(mapped[module.name]))
-            part.rename(module.mapped)
+    """Maps modules that are not mapped yet, each in a run of its own, some runs at a time."""
+    missing = {module.name: module for module in modules if not module.mapped.exists()}.values()
+    if missing:
+        print(f"{design}: Yosys is at work on {len(missing)} modules", flush=True)
+    with ThreadPoolExecutor(os.cpu_count()) as runs:
+        list(runs.map(map_alone, missing))
+
+
+def map_alone(module):
+    part = module.mapped.with_suffix(".part")
+    source, mapped = (part.with_suffix(ending).relative_to(SYNTH) for ending in (".il", ".one"))
+    (SYNTH / source).write_text("".join([module.text, *module.boxes.values()]))
+    yosys(source.with_suffix(".log"), f"read_rtlil {source}{MAP}; write_json -selected {mapped}")
+    part.write_text(json.dumps(json.loads((SYNTH / mapped).read_text())["modules"][module.name]))
+    part.rename(module.mapped)
+    for file in (source, source.with_suffix(".log"), mapped):
+        (SYNTH / file).unlink()
 
 
 def put_together(design, modules):
