@@ -22,7 +22,7 @@ module sptfra_ratio #(
     input  wire [WIDTH-1:0] numerator_x,
     input  wire [WIDTH-1:0] numerator_y,
     input  wire [WIDTH-1:0] denominator,
-    output wire done, // one cycle
+    output reg  done, // one cycle
     output reg  [BITS-1:0] quotient_x, // held until the next start
     output reg  [BITS-1:0] quotient_y
 );
@@ -42,9 +42,8 @@ module sptfra_ratio #(
     wire [WIDE:0] trial_x = {1'b0, remainder_x} - {1'b0, divisor};
     wire [WIDE:0] trial_y = {1'b0, remainder_y} - {1'b0, divisor};
 
-    assign done = (left == 1);
-
     always @(posedge clock) begin
+        done <= (left == 2) && !start && !reset;
         if (left != 0) begin
             left <= left - 1'b1;
         end
