@@ -3,7 +3,7 @@
 """Estimators of the tangential force under noise, compared: estimator_study.py SPTFRA OUT.csv
 
 Contacts that no training draws, from `sptfra scene`, with noise of 0.2 to 2 % of the largest reading. Beside the
-shipped designs stand candidates that are trained here, and a parametric fit. Takes ten minutes.
+shipped designs stand candidates that are trained here, and a parametric fit. Takes half an hour.
 """
 
 import hashlib
@@ -24,8 +24,10 @@ SIDE, DEPTH, POISSON = 10, 3e-3, 0.49
 TAXELS = SIDE * SIDE
 NOISES, DRAWS = (0.2, 0.5, 1.0, 2.0), 10
 CONTACTS, SEED = 200, 90_000
-SAMPLES, STEPS, BATCH, UNITS, MANY_UNITS = 40_000, 4000, 256, 64, 256
+SAMPLES, STEPS, BATCH, UNITS, MANY_UNITS, MANY_SAMPLES = 40_000, 4000, 256, 64, 256, 200_000
 NOISE = 0.01
+# The network on the frame alone: units of its layers, and steps of training.
+DEEP, DEEP_STEPS, DEEP_BATCH = (256, 256, 256), 20_000, 512
 # Constants of the grid search in golden/src/estimators/joint.
 DEAD_ZONE = LEVEL = 1 / 256
 LARGEST, STRESS_SCALE = 0.25, 16.0
@@ -130,7 +132,7 @@ def noisy(frames, share, random):
 class Search:
     """The grid search up to its features; `wiener` is the noise's share of a reading's power, 0 for the exact inverse."""
 
-    def __init__(self, layer, wiener=0.0, dead_zone=DEAD_ZONE):
+    def __init__(self, layer, wiener=0.0, dead_zone=DEAD_ZONE, level=LEVEL):
         dx, dy = layer.x - layer.x[:, None], layer.y - layer.y[:, None]
         c0 = 3 * DEPTH**2 / (2 * np.pi * (dx**2 + dy**2 + DEPTH**2) ** 2.5)
         c31, c32, c33 = c0 * dx, c0 * dy, c0 * DEPTH
@@ -141,7 +143,7 @@ class Search:
         e = c33 @ a[2]
         self.k = (np.eye(TAXELS) - e) @ c33, e @ c31, e @ c32
         self.sums = [[of.sum(0) @ c33, -of.sum(0) @ c31, -of.sum(0) @ c32] for of in a]
-        self.dead_zone = dead_zone
+        self.dead_zone, self.level = dead_zone, level
         reach = layer.radii[1] + DEPTH
         self.half = [int(np.clip(np.ceil(reach / pitch), 1, SIDE - 1)) for pitch in layer.pitch]
 
@@ -161,7 +163,7 @@ class Search:
             start = u0 + x * u1 - dead
             for row, along_y in enumerate(GRID.astype(np.float32)):
                 values[:, row, column] = np.maximum(start + along_y * u2, 0).sum(1)
-        weights = np.maximum(values.min((1, 2)) + LEVEL * total - values.transpose(1, 2, 0), 0) ** 2
+        weights = np.maximum(values.min((1, 2)) + self.level * total - values.transpose(1, 2, 0), 0) ** 2
         mu = np.stack([(weights.sum(0).T @ GRID), (weights.sum(1).T @ GRID)], 1) / weights.sum((0, 1))[:, None]
         g = np.stack([np.stack([y @ row[0], w @ row[1], w @ row[2]], 1) for row in self.sums], 1)
         g[:, 0, 1] += w.sum(1)
@@ -224,8 +226,8 @@ class Network:
         scales = [((places, units), np.sqrt(2 / places)), ((units, 2), 0.03 / np.sqrt(units))]
         self.weights = [(scale * random.standard_normal(of)).astype(np.float32) for of, scale in scales]
 
-    def __call__(self, inputs, limit=LARGEST):
-        return np.clip(self.forward(inputs @ self.basis)[-1], -limit, limit)
+    def __call__(self, inputs):
+        return np.clip(self.forward(inputs @ self.basis)[-1], -LARGEST, LARGEST)
 
     def forward(self, inputs):
         hidden, output = self.weights
@@ -235,12 +237,12 @@ class Network:
         return images, (odd_x, odd_y), np.stack([odd_x @ output[:, 0], odd_y @ output[:, 1]], 1) / 4
 
     def train(self, inputs, wanted, random):
-        """Adam on the squared error, its rate along a cosine. `inputs` of an index may draw its noise anew."""
-        fixed = None if callable(inputs) else inputs @ self.basis
+        """Adam on the squared error, its rate along a cosine."""
+        inputs = inputs @ self.basis
         moments = [[np.zeros_like(of) for of in self.weights] for _ in range(2)]
         for step in range(1, STEPS + 1):
             index = random.integers(0, len(wanted), BATCH)
-            batch = inputs(index) @ self.basis if fixed is None else fixed[index]
+            batch = inputs[index]
             images, (odd_x, odd_y), found = self.forward(batch)
             error = (found - wanted[index]) / (4 * BATCH)
             output = self.weights[1]
@@ -279,11 +281,11 @@ def fit(mu, g, forces):
     return gain, wanted, np.linalg.lstsq(terms, np.r_[wanted[:, 0], wanted[:, 1]], rcond=None)[0]
 
 
-def searched(layer, samples, sets, least=0.0, other=None, product=False, units=UNITS, **search):
-    """Errors of the grid search with a network, by noise; trained at `least` to 1 of the noise."""
+def searched(layer, samples, sets, least=0.0, most=1.0, other=None, product=False, units=UNITS, **search):
+    """Errors of the grid search with a network, by noise; trained at `least` to `most` of the noise."""
     frames, forces = samples
     random = np.random.default_rng(2)
-    share = NOISE * (least + (1 - least) * random.random(len(frames)))
+    share = NOISE * (least + (most - least) * random.random(len(frames)))
     read = noisy(frames, share[:, None], random)
     first, second = Search(layer, **search), other and Search(layer, **other)
 
@@ -308,21 +310,42 @@ def searched(layer, samples, sets, least=0.0, other=None, product=False, units=U
         yield errors(gain * (g[:, :2, 0] + np.einsum("npq,nq->np", g[:, :2, 1:], pair)), truth)
 
 
-def whole_frame(layer, samples, sets):
-    """Errors of a network on the frame alone, whose answer is the tangential force over the normal one."""
+def whole_frame(samples, sets, most=1.0):
+    """Errors of a plain network on the frame alone, whose answer is the tangential force over the normal one."""
     frames, forces = samples
     random = np.random.default_rng(3)
 
     def inputs(frames):
-        return (STRESS_SCALE * frames / np.abs(frames).sum(1, keepdims=True)).astype(np.float32)
+        return (10 * frames / np.sqrt((frames**2).sum(1, keepdims=True))).astype(np.float32)
 
-    def fresh(index):
-        return inputs(noisy(frames[index], NOISE * random.random((len(index), 1)), random))
+    sizes = [TAXELS, *DEEP, 2]
+    weights = [(np.sqrt(2 / n) * random.standard_normal((n, m))).astype(np.float32) for n, m in zip(sizes, sizes[1:])]
+    parameters = [*weights, *(np.zeros(m, np.float32) for m in sizes[1:])]
+    moments = [[np.zeros_like(of) for of in parameters] for _ in range(2)]
 
-    network = Network(fresh(np.arange(20_000)), 1, (SIDE, SIDE), MANY_UNITS, random)
-    network.train(fresh, forces[:, :2].astype(np.float32), random)
+    def forward(values):
+        found = [values]
+        for layer, (weight, offset) in enumerate(zip(parameters, parameters[len(weights) :])):
+            values = found[-1] @ weight + offset
+            found.append(np.maximum(values, 0) if layer < len(DEEP) else values)
+        return found
+
+    for step in range(1, DEEP_STEPS + 1):
+        index = random.integers(0, len(frames), DEEP_BATCH)
+        share = most * NOISE * random.random((DEEP_BATCH, 1))
+        found = forward(inputs(noisy(frames[index], share, random)))
+        slope, weight_slopes, offset_slopes = (found[-1] - forces[index, :2].astype(np.float32)) / DEEP_BATCH, [], []
+        for layer in reversed(range(len(weights))):
+            weight_slopes.insert(0, found[layer].T @ slope)
+            offset_slopes.insert(0, slope.sum(0))
+            slope = (slope @ parameters[layer].T) * (found[layer] > 0)
+        rate = np.float32(5e-4 * (1 + np.cos(np.pi * step / DEEP_STEPS)))
+        for of, gradient, mean, square in zip(parameters, [*weight_slopes, *offset_slopes], *moments):
+            mean += 0.1 * (gradient - mean)
+            square += 0.001 * (gradient**2 - square)
+            of -= rate * (mean / np.float32(1 - 0.9**step)) / (np.sqrt(square / np.float32(1 - 0.999**step)) + 1e-8)
     for frames, truth in sets.values():
-        yield errors(network(inputs(frames), np.inf) * np.abs(truth[:, 2:]), truth)
+        yield errors(forward(inputs(frames))[-1] * np.abs(truth[:, 2:]), truth)
 
 
 class Parametric:
@@ -408,9 +431,10 @@ HEAD = """\
 # fast, wide: the shipped designs. The bound (Cramér-Rao) is in noise.csv.
 # search: the grid search with {units} hidden units, trained as those below; high-noise: at {half:.1%} to {noise:.0%} only.
 # wiener: an inverse regularised for the noise in place of C33^-1; wiener-strong: 25 times more.
-# dead-zone: of two deviations of the noise. both: features of C33^-1 and of wiener-strong.
+# dead-zone: of two deviations of the noise; level-low, -high: a quarter and four times the level of the grid search.
+# both: features of C33^-1 and of wiener-strong. NAME-2: trained at a noise up to {twice:.0%}.
 # product: (F_x, F_y) is friction times F_z, in place of sums over |w|; large: high-noise too, with {many} hidden units.
-# frame: {many} hidden units on the frame alone.
+# frame: a plain network of {deep} units in three layers, on the frame alone; {many_samples} contacts, noise drawn anew.
 # parametric: two steps of Gauss-Newton on place, radius and force of a round contact.
 # command: python3 tools/estimator_study.py SPTFRA results/estimator-study.csv
 # designs (SHA-256 of file and weights): {designs}
@@ -431,6 +455,7 @@ def head():
     """What the table is, with the designs' sums."""
     designs = designs_sums(f"sensor{sensor}-{name}" for sensor in PITCHES_MM for name in ("fast", "wide"))
     sizes = {"contacts": CONTACTS, "draws": DRAWS, "units": UNITS, "many": MANY_UNITS}
+    sizes |= {"twice": 2 * NOISE, "deep": " + ".join(map(str, DEEP)), "many_samples": MANY_SAMPLES}
     return HEAD.format(**sizes, noise=NOISE, half=NOISE / 2, designs=designs)
 
 
@@ -478,13 +503,19 @@ def main() -> None:
                     "wiener": {"wiener": NOISE**2 / power},
                     "wiener-strong": strong,
                     "dead-zone": {"dead_zone": 2 * NOISE},
+                    "level-low": {"level": LEVEL / 4},
+                    "level-high": {"level": 4 * LEVEL},
                     "both": {"other": strong},
+                    "search-2": {"most": 2.0},
+                    "product-high-noise-2": {"product": True, "least": 1.0, "most": 2.0},
                 }
                 for estimator, options in candidates.items():
                     for noise, of in zip(sets, searched(layer, samples, sets, **options)):
                         row(sensor, kind, estimator, noise, of)
-                for noise, of in zip(sets, whole_frame(layer, samples, sets)):
-                    row(sensor, kind, "frame", noise, of)
+                many_samples = layer.contacts(MANY_SAMPLES, np.random.default_rng(4))
+                for estimator, most in [("frame", 1.0), ("frame-2", 2.0)]:
+                    for noise, of in zip(sets, whole_frame(many_samples, sets, most)):
+                        row(sensor, kind, estimator, noise, of)
     out.write_text("".join(lines), encoding="utf-8")
 
 
