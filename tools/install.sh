@@ -18,13 +18,13 @@ wanted=""   # some checks do
 have "${CXX:-g++}" || needed="$needed g++"
 have python3 && python3 -c 'import ensurepip, venv' 2> /dev/null || needed="$needed python3 python3-venv"
 have ar || needed="$needed binutils"
-have iverilog || wanted="$wanted iverilog"
-have tclsh || wanted="$wanted tcl"
-have dtc && have fdtoverlay || wanted="$wanted device-tree-compiler"
-# What the boards' processors run, libraries for the linker included: 81 MB to fetch.
-have aarch64-linux-gnu-gcc || wanted="$wanted gcc-aarch64-linux-gnu libc6-dev-arm64-cross"
-have arm-linux-gnueabihf-gcc || wanted="$wanted gcc-arm-linux-gnueabihf libc6-dev-armhf-cross"
 if [ "${1:-}" = tests ]; then
+    have iverilog || wanted="$wanted iverilog"
+    have tclsh || wanted="$wanted tcl"
+    have dtc && have fdtoverlay || wanted="$wanted device-tree-compiler"
+    # What the boards' processors run, libraries for the linker included: 81 MB to fetch.
+    have aarch64-linux-gnu-gcc || wanted="$wanted gcc-aarch64-linux-gnu libc6-dev-arm64-cross"
+    have arm-linux-gnueabihf-gcc || wanted="$wanted gcc-arm-linux-gnueabihf libc6-dev-armhf-cross"
     have verilator || wanted="$wanted verilator"
     have chromium || have chromium-browser || have google-chrome || wanted="$wanted chromium"
 fi
