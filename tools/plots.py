@@ -176,21 +176,24 @@ def error_latency():
         parts.append(text(left - 8, y(error) + 4, str(error), "end", size=12))
     parts.append(text((left + right) / 2, bottom + 42, "latency of a frame of 10 × 10 taxels (logarithmic)", "middle"))
     parts.append(text(left, top - 12, "largest tangential error, % of the normal force"))
-    # Errors of the first design are those of the second: the forces are the same.
+    # Errors of the first design are those of the second: the forces, or their sums, are the same.
     shown = [
-        ("sensor1-none", "sensor1-reduced", "line search, 16 lanes", 1, 8, 4),
-        ("sensor1-fast", "sensor1-fast", "grid search, 16 lanes", 2, -10, 20),
+        ("sensor1-none", "sensor1-reduced", "line search, 16 lanes", 1, 10, 4),
+        ("sensor1-none", "sensor1-resultants", "resultants only", 1, -14, -12),
+        ("sensor1-fast", "sensor1-fast", "grid search, 16 lanes", 2, 10, 0),
         ("sensor1-fast", "sensor1-fast-64", "64 lanes", 2, -12, 20),
         ("sensor1-fast-100", "sensor1-fast-100", "100 lanes", 2, -12, -12),
+        ("sensor1-wide", "sensor1-wide", "trained on any contacts", 3, 10, 14),
     ]
     for measured, design, words, colour, right_by, down in shown:
         place = (x(latency[design]), y(worst[measured]))
         parts.append(f'<circle cx="{place[0]:.1f}" cy="{place[1]:.1f}" r="6" fill="{COLOURS[colour]}"/>')
         parts.append(text(place[0] + right_by, place[1] + down, words, size=12))
-    hw1 = published["HW1"]
-    place = (x(float(hw1["latency_us"])), y(float(hw1["tangential"])))
-    parts.append(f'<rect x="{place[0] - 6:.1f}" y="{place[1] - 6:.1f}" width="12" height="12" fill="{COLOURS[0]}"/>')
-    parts.append(text(place[0] + 4, place[1] - 14, "published HW 1, no filter", "end", size=12))
+    for name, words in (("HW1", "published HW 1, no filter"), ("HW1F3", "with filter F3")):
+        row = published[name]
+        place = (x(float(row["latency_us"])), y(float(row["tangential"])))
+        parts.append(f'<rect x="{place[0] - 6:.1f}" y="{place[1] - 6:.1f}" width="12" height="12" fill="{COLOURS[0]}"/>')
+        parts.append(text(place[0] + 6, place[1] - 14, words, "end", size=12))
     return picture(width, height, "Error against latency", parts)
 
 
