@@ -113,8 +113,10 @@ mod tests {
                 let values: Vec<_> = if takes { values.collect() } else { Vec::new() };
                 let shown = name.into_iter().chain(values).collect::<Vec<_>>().join(" ");
                 let help = option.get_long_help().or(option.get_help()).map(ToString::to_string).unwrap_or_default();
-                let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
-                let help = help.trim_end_matches('.');
+                let paragraph = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+                let help: Vec<_> =
+                    help.split("\n\n").map(|text| paragraph(text).trim_end_matches('.').to_owned()).collect();
+                let help = help.join(". ");
                 let words: Vec<_> =
                     option.get_possible_values().iter().map(|word| format!("`{}`", word.get_name())).collect();
                 let words = if takes && !words.is_empty() && !option.is_hide_possible_values_set() {
