@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::ops::{Range, RangeInclusive};
 
 use golden::design::{Design, Input};
+use golden::estimators::joint::TrainingSet;
 use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneError, SceneFrame, bound, normal};
 use golden::smoothing::{Average, Smoothing};
@@ -143,6 +144,7 @@ pub fn smoothing_rows(designs: &[(String, Design)]) -> Result<String, NoiseError
 pub const COLUMNS: &str = "design,noise,median,p95,worst,bound,bound_p95";
 
 /// The table of some designs, which go by the names of their files, each with the bound of median and 95 % on its sensor.
+/// A design that is trained on contacts of any kind has rows of mixed ones too, without a bound.
 ///
 /// # Errors
 ///
@@ -157,6 +159,13 @@ pub fn rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
             let Quantiles { median, most, worst } = errors(design, &frames, percent)?;
             // Writing to a String cannot fail.
             let _ = writeln!(text, "{name},{percent},{median:.1},{most:.1},{worst:.1},{bound:.2},{bound_most:.2}");
+        }
+        if design.algorithm.joint.training_set == TrainingSet::General {
+            let frames = Kind::MixedInside.frames(&design.sensor, FRICTION, SEEDS)?;
+            for percent in NOISE_PERCENT {
+                let Quantiles { median, most, worst } = errors(design, &frames, percent)?;
+                let _ = writeln!(text, "{name}-mixed,{percent},{median:.1},{most:.1},{worst:.1},,");
+            }
         }
     }
     Ok(text)
