@@ -139,7 +139,7 @@ pub(super) fn keys(design: &Design, named: impl Fn(&str) -> String) -> DesignKey
             pitch_mm,
             depth_mm,
             tension: input.tension,
-            noise: NoiseKey::of(input),
+            noise: input.measured_noise.map_or(NoiseKey::Share(input.noise), NoiseKey::Measured),
             crosstalk: Some(input.crosstalk).filter(|&share| share > 0.0),
             creep: input.creep,
             smoothing: Some(input.smoothing).filter(|&k| k > 0),
