@@ -11,6 +11,7 @@ use crate::contacts::{ContactForces, MOST};
 use crate::frames::{self, FrameError, Numbers, Table};
 use crate::geometry::{self, GeometryError};
 use crate::metrics::Outcome;
+use crate::numbers::push_row;
 use crate::output;
 use crate::scene::SceneFrame;
 use crate::sensor::Sensor;
@@ -137,7 +138,7 @@ pub fn push_line(text: &mut String, row: &[f64]) {
     // A status is a word of bits, so it is written without a point.
     text.push_str(&(row[0] as u32).to_string());
     text.push(',');
-    frames::push_row(text, row.iter().skip(1).copied());
+    push_row(text, row.iter().skip(1).copied());
 }
 
 /// Reads the resultants, friction and direction of a force file of `frames` lines: one of [`row`], or any table of measured
