@@ -72,7 +72,7 @@ pub struct Design {
     pub input: Input,
     /// Choices that change the result.
     pub algorithm: Algorithm,
-    /// Choices that change only speed, size and rounding.
+    /// Speed, size, rounding, range and interfaces of the core.
     pub hardware: Hardware,
 }
 
