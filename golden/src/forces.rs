@@ -173,7 +173,7 @@ pub fn read_outcomes(path: &Path, frames: usize) -> Result<Vec<Outcome>, FrameEr
 fn unusable(path: &Path, line: usize, problem: &str) -> FrameError {
     let remedy = "true forces lie beside the frames of `sptfra scene`, in FRAMES.forces.csv, a line each that begins with \
                   status, F_x, F_y, F_z, mu and phi";
-    FrameError::line(path, line, format_args!("{problem}, so these are no forces; {remedy}"))
+    FrameError::line(path, line, format_args!("{problem}, so errors cannot be computed; {remedy}"))
 }
 
 /// The same of a table of measured forces.
@@ -189,7 +189,7 @@ fn measured_outcomes(path: &Path, frames: usize, measured: &Measured) -> Result<
             let friction = if tangential > 0.0 { tangential / z.abs().max(f64::MIN_POSITIVE) } else { 0.0 };
             Ok(Outcome { force: [x, y, sign * z], friction, direction: y.atan2(x) })
         }
-        _ => Err(unusable(path, line + 1, "F_x, F_y or F_z is not known, and errors need all three")),
+        _ => Err(unusable(path, line + 1, "F_x, F_y or F_z is not known")),
     };
     measured.forces.iter().enumerate().map(outcome).collect()
 }
