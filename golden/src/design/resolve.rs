@@ -55,6 +55,7 @@ fn algorithm(
     let regularisation = match keys.regularisation {
         Some(Regularisation::Factor(0.0)) => Regularisation::None,
         Some(other) => other,
+        // Of the whole noise: the frame that restarts an average has it, and constants of single frames serve averages.
         None => Regularisation::usual(sensor, reads.noise),
     };
     let kernel = keys.kernel.unwrap_or(Kernel::usual(sensor));
