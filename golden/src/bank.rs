@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::dead_taxels::DeadTaxels;
 use crate::design::{CalibrationIn, Design};
-use crate::frames::push_row;
+use crate::numbers::push_row;
 
 /// The file that the drivers load, for a design whose calibration is in RAM. A header line `gain,offset,taxel 37,…` names
 /// the dead taxels, ascending; then follows a line for each taxel: its gain, 0 of a dead one, its offset in counts, and its

@@ -11,6 +11,7 @@ use crate::contacts::{ContactForces, MOST};
 use crate::frames::{self, FrameError, Numbers, Table};
 use crate::geometry::{self, GeometryError};
 use crate::metrics::Outcome;
+use crate::numbers::push_row;
 use crate::output;
 use crate::scene::SceneFrame;
 use crate::sensor::Sensor;
@@ -137,7 +138,7 @@ pub fn push_line(text: &mut String, row: &[f64]) {
     // A status is a word of bits, so it is written without a point.
     text.push_str(&(row[0] as u32).to_string());
     text.push(',');
-    frames::push_row(text, row.iter().skip(1).copied());
+    push_row(text, row.iter().skip(1).copied());
 }
 
 /// Reads the resultants, friction and direction of a force file of `frames` lines: one of [`row`], or any table of measured
@@ -172,7 +173,7 @@ pub fn read_outcomes(path: &Path, frames: usize) -> Result<Vec<Outcome>, FrameEr
 fn unusable(path: &Path, line: usize, problem: &str) -> FrameError {
     let remedy = "true forces lie beside the frames of `sptfra scene`, in FRAMES.forces.csv, a line each that begins with \
                   status, F_x, F_y, F_z, mu and phi";
-    FrameError::line(path, line, format_args!("{problem}, so these are no forces; {remedy}"))
+    FrameError::line(path, line, format_args!("{problem}, so errors cannot be computed; {remedy}"))
 }
 
 /// The same of a table of measured forces.
@@ -188,7 +189,7 @@ fn measured_outcomes(path: &Path, frames: usize, measured: &Measured) -> Result<
             let friction = if tangential > 0.0 { tangential / z.abs().max(f64::MIN_POSITIVE) } else { 0.0 };
             Ok(Outcome { force: [x, y, sign * z], friction, direction: y.atan2(x) })
         }
-        _ => Err(unusable(path, line + 1, "F_x, F_y or F_z is not known, and errors need all three")),
+        _ => Err(unusable(path, line + 1, "F_x, F_y or F_z is not known")),
     };
     measured.forces.iter().enumerate().map(outcome).collect()
 }

@@ -1,9 +1,10 @@
 //! Physics and reference solver of a tactile sensor that finds three-axis forces from normal stress alone.
 //!
-//! The method is that of Pinto-Salamanca et al., Sensors 2024, 24, 7829. Everything here is computed in `f64`
-//! and knows nothing of hardware: a sensor geometry gives the 13 matrices of the method, a filter makes them
-//! sparse, and the solver turns one frame of normal stress into a force for each taxel, the resultant, and the
-//! friction state. Scenes with known forces give frames to check the result against.
+//! The method is that of Pinto-Salamanca et al., Sensors 2024, 24, 7829. Everything here is computed in `f64`:
+//! `[hardware]` of a design is checked, and no bit width in it changes a result. A sensor geometry gives the 13
+//! matrices of the method, a filter makes them sparse, and the solver turns one frame of normal stress into a force
+//! for each taxel, the resultant, and the friction state. Scenes with known forces give frames to check the result
+//! against.
 //!
 //! ```
 //! use golden::{design::Design, solver::Solver};

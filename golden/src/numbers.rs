@@ -1,6 +1,7 @@
-//! Largest magnitudes, middles, correlations and roundings of values, and numbers of things in words.
+//! Largest magnitudes, middles, correlations and roundings of values, numbers of things in words, and rows of values as text.
 
 use std::borrow::Borrow;
+use std::fmt::Write;
 
 /// The largest magnitude; 0 of no values.
 pub(crate) fn magnitude(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
@@ -50,4 +51,14 @@ pub(crate) fn rounded(value: f64, digits: i32) -> f64 {
     let digits = digits - 1 - value.abs().log10().floor() as i32;
     let scale = 10_f64.powi(digits.abs());
     if digits >= 0 { (value * scale).round() / scale } else { (value / scale).round() * scale }
+}
+
+/// Appends one CSV row; each number is the shortest that reads back as the same float.
+pub(crate) fn push_row(text: &mut String, values: impl Iterator<Item = f64>) {
+    for (index, value) in values.enumerate() {
+        let separator = if index == 0 { "" } else { "," };
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{separator}{value:?}");
+    }
+    text.push('\n');
 }

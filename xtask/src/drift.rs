@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::ops::Range;
 
+use golden::calibrate::recorded::creep::fit;
 use golden::creep;
 use golden::design::Design;
 use golden::metrics::Quantiles;
@@ -174,7 +175,7 @@ fn common(taxels: &[Taxel]) -> Result<creep::Creep, String> {
     };
     let sums: Vec<f64> =
         (0..=FRAMES_PER_SECOND * STEP_OF_LOAD).map(|frame| sum(if frame == 0 { 0.0 } else { 0.5 })).collect();
-    creep::fit(&sums, STEP).map(|found| found.creep)
+    fit(&sums, STEP).map(|found| found.creep)
 }
 
 /// One taxel with all that corrects it.

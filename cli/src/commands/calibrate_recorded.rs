@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use golden::calibrate::recorded::{
-    Measured, Recorded, RecordedError, fit_forces, fit_uniform, read_forces, read_pressures,
+    Measured, Recorded, RecordedError, creep, fit_forces, fit_uniform, read_forces, read_pressures,
 };
 use golden::check::check;
-use golden::creep::{self, Creep};
+use golden::creep::Creep;
 use golden::design::{Design, Filter};
 use golden::matrices::Matrices;
 use golden::numbers::counted;
@@ -233,7 +233,7 @@ impl<'a> Pressed<'a> {
             let interval = self.interval.clone().transpose();
             let interval = interval.map_err(|problem| format!("{}: {problem}", self.file.display()))?;
             let rate = interval.map_or(creep.frames_per_second, |interval| 1.0 / interval);
-            Creep { frames_per_second: rate, ..creep }.remove_from_recording(design, &mut freed);
+            creep::remove_creep(&Creep { frames_per_second: rate, ..creep }, design, &mut freed);
         }
         let largest = freed.iter().flatten().fold(0.0, |largest: f64, value| largest.max(value.abs()));
         let mut pairs = freed.iter().flatten().zip(self.freed.iter().flatten());

@@ -126,6 +126,8 @@ fn sensor(out: &mut String, plan: &Plan) {
     if let Some(expected) = plan.design.expected_error() {
         let expected = expected.to_string().replacen(" (median", &format!("\n{INDENT}(median"), 1);
         say!(out, "  error        {expected}");
+    } else {
+        say!(out, "  error        unknown; `sptfra calibrate` finds it and writes it into the design");
     }
     say!(out, "  kernel       {}", plan.estimator.block().kernel_advice(&plan.design, INDENT));
     if let Some((layer, remedy)) = thin.as_deref().and_then(|thin| thin.split_once(": ")) {

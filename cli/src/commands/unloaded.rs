@@ -101,30 +101,30 @@ pub fn run(
     if beyond.readings > 0 {
         say!(text, "{beyond}");
     }
-    let full_scale = MeasuredNoise { deviation: rest.noise_pa, largest: design.hardware.full_scale_pa };
-    match of_contacts {
-        Some(noise) => say!(text, "[sensor] noise = {}  # of typical contacts", key(&design.input, noise)),
-        None if rest.noise_pa > 0.0 => say!(
-            text,
-            "[sensor] noise = {}  # of contacts at full scale; for yours, name their frames with --loaded",
-            key(&design.input, full_scale)
-        ),
-        None => (),
-    }
     if let Some(expected) = &report.expected_error {
         let of = if noise_of_contacts.is_some() { "" } else { " This noise is the design's." };
         say!(text, "{expected}{of}");
     }
-    say!(text, "[algorithm] noise_floor_pa = {:.1}  # three standard deviations", ceil(rest.noise_floor_pa));
+    let full_scale = MeasuredNoise { deviation: rest.noise_pa, largest: design.hardware.full_scale_pa };
+    let noise = match of_contacts {
+        Some(noise) => Some((noise, "of typical contacts")),
+        None => (rest.noise_pa > 0.0)
+            .then_some((full_scale, "of contacts at full scale; for yours, name their frames with --loaded")),
+    };
+    if noise.is_some() || out.is_some() {
+        say!(text, "[sensor]");
+    }
+    if let Some((noise, of)) = noise {
+        say!(text, "noise = {}  # {of}", key(&design.input, noise));
+    }
     if let Some(out) = out {
         let same = folder(out) == folder(path);
         let name = out.file_name().filter(|_| same).map_or_else(|| out.into(), Into::<std::path::PathBuf>::into);
-        say!(
-            text,
-            "[sensor] calibration = {:?}  # written; the file is found from the design's folder",
-            name.display().to_string()
-        );
+        let name = name.display().to_string();
+        say!(text, "calibration = {name:?}  # written; the file is found from the design's folder");
     }
+    say!(text, "[algorithm]");
+    say!(text, "noise_floor_pa = {:.1}  # three standard deviations", ceil(rest.noise_floor_pa));
     Ok(Message { text, faults })
 }
 

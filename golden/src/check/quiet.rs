@@ -1,6 +1,6 @@
 //! Frames of a sensor on which nothing presses, tared or not, whether it reads what pulls or not.
 
-use super::{ABOVE_NOISE, LOUD, PRESSES, count, holds, largest};
+use super::{ABOVE_NOISE, FAR_ABOVE, LOADED, LOUD, PRESSES, count, holds, largest};
 use crate::design::Design;
 use crate::numbers::mean;
 use crate::sensor::Sensor;
@@ -15,12 +15,15 @@ const OFFSET: f64 = 0.05;
 const CLEAR: f64 = 3.0;
 
 /// A message where frames, in pascals, are those of an unloaded sensor.
-pub(super) fn check(design: &Design, stress: &[Vec<f64>], is_loaded: &[bool], peak: f64) -> Option<String> {
+pub(super) fn check(design: &Design, stress: &[Vec<f64>]) -> Option<String> {
     let full_scale = design.hardware.full_scale_pa;
+    // Noise that the design states may be louder.
+    let loud = (LOUD * full_scale).max(FAR_ABOVE * design.algorithm.noise_floor_pa);
+    let peak = stress.iter().map(|frame| largest(frame)).fold(0.0, f64::max);
     let remedy = "`sptfra check DESIGN --frames FRAMES --unloaded` gives each taxel's offset, noise and drift";
     let floor = |mean: f64| (10.0 * ABOVE_NOISE * mean).ceil() / 10.0;
-    if peak < LOUD * full_scale
-        && let Some((noise, of, mean)) = noise(&design.sensor, stress, is_loaded)
+    if peak < loud
+        && let Some((noise, of, mean)) = noise(&design.sensor, stress, peak)
     {
         return Some(format!(
             "nothing presses in {noise} of {}: readings of either sign, {mean:.3} Pa in the mean, add up to nothing. If the \
@@ -30,7 +33,7 @@ pub(super) fn check(design: &Design, stress: &[Vec<f64>], is_loaded: &[bool], pe
             floor(mean)
         ));
     }
-    let (offset, mean) = still(&design.sensor, stress, full_scale)?;
+    let (offset, mean) = still(&design.sensor, stress, loud, OFFSET * full_scale)?;
     let of = count(stress.len());
     let begin = if offset > 0.0 {
         format!("nothing presses in {of}, or it never moves: taxels stay at offsets of up to {offset:.0} Pa")
@@ -45,9 +48,8 @@ pub(super) fn check(design: &Design, stress: &[Vec<f64>], is_loaded: &[bool], pe
 }
 
 /// In how many of how many loaded frames readings of both signs add up to nothing, and their mean magnitude.
-fn noise(sensor: &Sensor, stress: &[Vec<f64>], is_loaded: &[bool]) -> Option<(usize, usize, f64)> {
-    let loaded: Vec<&Vec<f64>> =
-        stress.iter().zip(is_loaded).filter(|(_, loaded)| **loaded).map(|(frame, _)| frame).collect();
+fn noise(sensor: &Sensor, stress: &[Vec<f64>], peak: f64) -> Option<(usize, usize, f64)> {
+    let loaded: Vec<&Vec<f64>> = stress.iter().filter(|frame| largest(frame) >= LOADED * peak).collect();
     let all = |frame: &[f64]| frame.iter().map(|stress| stress.abs()).sum::<f64>();
     // The sum of m Gaussian readings has 1.25 / √m of their magnitudes as its deviation.
     let chance = PRESSES.max((4.0 / (sensor.taxels() as f64).sqrt()).min(0.5));
@@ -61,9 +63,9 @@ fn noise(sensor: &Sensor, stress: &[Vec<f64>], is_loaded: &[bool]) -> Option<(us
     holds(noise, loaded.len()).then_some((noise, loaded.len(), mean))
 }
 
-/// Frames in which no taxel moves but for its noise. Returns the largest offset (0: none) and the mean magnitude of the
-/// noise, in pascals.
-fn still(sensor: &Sensor, stress: &[Vec<f64>], full_scale: f64) -> Option<(f64, f64)> {
+/// Frames in which no taxel moves but for noise below `loud`, with offsets below `far`. Returns the largest offset (0: none)
+/// and the mean magnitude of the noise, in pascals.
+fn still(sensor: &Sensor, stress: &[Vec<f64>], loud: f64, far: f64) -> Option<(f64, f64)> {
     if stress.len() < FRAMES {
         return None;
     }
@@ -73,10 +75,10 @@ fn still(sensor: &Sensor, stress: &[Vec<f64>], full_scale: f64) -> Option<(f64, 
         stress.iter().map(|frame| frame.iter().zip(&means).map(|(stress, mean)| stress - mean).collect()).collect();
     let squares: f64 = rest.iter().flatten().map(|stress| stress * stress).sum();
     let deviation = (squares / (frames * taxels as f64)).sqrt();
-    let moves = rest.iter().map(|frame| largest(frame)).fold(0.0, f64::max) >= LOUD * full_scale;
+    let moves = rest.iter().map(|frame| largest(frame)).fold(0.0, f64::max) >= loud;
     // Each frame by its own squares, so that a contact in few frames is not lost among many.
     let common = mean(rest.iter().map(|frame| together(sensor, frame)));
-    if moves || squares <= 0.0 || common >= TOGETHER || largest(&means) >= OFFSET * full_scale {
+    if moves || squares <= 0.0 || common >= TOGETHER || largest(&means) >= far {
         return None;
     }
     // A peak that noise does not have is something that passes.

@@ -7,7 +7,8 @@
 //! of its own, and the forces of all contacts are separated once more. The `b_k` add up to the frame, so its forces are the sums.
 //!
 //! [`Finder`] finds the contacts in what presses: connected components of touched taxels ([`Labels`]), and for each taxel the
-//! nearest component. Both take a fixed number of steps on whole numbers, so that hardware can do the same.
+//! nearest component. The hardware counts components by the same rule, on integers. With the default bits and no filter the
+//! counts differ only where a share, of a taxel in the largest `|w|` or of a component in all, is within 0.0001 of [`SHARE`].
 
 mod labels;
 mod regions;

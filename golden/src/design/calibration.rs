@@ -4,7 +4,7 @@ use super::DesignError;
 use super::curve::{Curve, is_header_of_points};
 use super::files::FileSource;
 use super::rows::{Row, Rows};
-use crate::frames::push_row;
+use crate::numbers::push_row;
 
 /// Range of a live taxel's gain.
 const GAIN: [f64; 2] = [1e-9, 16.0];

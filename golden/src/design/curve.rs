@@ -6,7 +6,7 @@ use super::files::FileSource;
 use super::hardware::{Hardware, Samples};
 use super::keys::CurveKey;
 use super::rows::{Row, Rows};
-use crate::frames::push_row;
+use crate::numbers::push_row;
 
 /// Most segments of a curve.
 pub const MOST_SEGMENTS: usize = 64;

@@ -1,4 +1,4 @@
-//! The `[hardware]` table: choices that change speed, size and rounding.
+//! The `[hardware]` table: speed, size, rounding, range and interfaces of the core.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -107,7 +107,8 @@ pub enum Overrun {
     Drop,
 }
 
-/// The hardware: choices that change speed, size and rounding.
+/// The hardware: speed, size and rounding of the core, its range, its interfaces, and what becomes of frames that find no
+/// room.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Hardware {

@@ -8,11 +8,8 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{
-    DEFAULT_NOISE, ExpectedError, FilterKind, Hardware, Input, MAX_NOISE, MAX_SIDE, MeasuredNoise, Outputs, PlanKind,
-    Regularisation, Slip,
-};
-use super::{Tension, TrainingSet};
+use super::readings::{DEFAULT_NOISE, MAX_NOISE, MeasuredNoise, Tension};
+use super::{ExpectedError, FilterKind, Hardware, MAX_SIDE, Outputs, PlanKind, Regularisation, Slip, TrainingSet};
 use crate::contacts;
 use crate::creep::Creep;
 use crate::estimators::{Estimator, StandardError};
@@ -123,11 +120,6 @@ impl NoiseKey {
             Self::Share(_) => None,
             Self::Measured(noise) => Some(noise),
         }
-    }
-
-    /// The key of an input.
-    pub(super) fn of(input: &Input) -> Self {
-        input.measured_noise.map_or(Self::Share(input.noise), Self::Measured)
     }
 }
 

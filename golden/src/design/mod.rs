@@ -20,6 +20,7 @@ mod joint;
 mod keys;
 mod old_format;
 mod read;
+mod readings;
 mod regularisation;
 mod resolve;
 mod rows;
@@ -48,9 +49,10 @@ pub use filter::{Choices, Filter, FilterKind, MatrixFilter};
 pub use hardware::{
     CalibrationIn, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise, Overrun, STREAM_BITS, Samples, Scaling,
 };
-pub use input::{DEFAULT_NOISE, Input, MAX_NOISE, MeasuredNoise, Tension};
+pub use input::Input;
 pub use joint::{Reads, conditions};
 pub use read::syntax_position;
+pub use readings::{DEFAULT_NOISE, MAX_NOISE, MeasuredNoise, Tension};
 pub use regularisation::Regularisation;
 pub use schema::design_schema;
 
@@ -70,7 +72,7 @@ pub struct Design {
     pub input: Input,
     /// Choices that change the result.
     pub algorithm: Algorithm,
-    /// Choices that change only speed, size and rounding.
+    /// Speed, size, rounding, range and interfaces of the core.
     pub hardware: Hardware,
 }
 

@@ -55,6 +55,7 @@ fn algorithm(
     let regularisation = match keys.regularisation {
         Some(Regularisation::Factor(0.0)) => Regularisation::None,
         Some(other) => other,
+        // Of the whole noise: the frame that restarts an average has it, and constants of single frames serve averages.
         None => Regularisation::usual(sensor, reads.noise),
     };
     let kernel = keys.kernel.unwrap_or(Kernel::usual(sensor));
@@ -139,7 +140,7 @@ pub(super) fn keys(design: &Design, named: impl Fn(&str) -> String) -> DesignKey
             pitch_mm,
             depth_mm,
             tension: input.tension,
-            noise: NoiseKey::of(input),
+            noise: input.measured_noise.map_or(NoiseKey::Share(input.noise), NoiseKey::Measured),
             crosstalk: Some(input.crosstalk).filter(|&share| share > 0.0),
             creep: input.creep,
             smoothing: Some(input.smoothing).filter(|&k| k > 0),

@@ -9,8 +9,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::design::{Algorithm, Design};
-
 /// Fraction bits of the logarithm.
 pub const ERROR_FRACTION: u32 = 12;
 /// Least and largest logarithm of base 2: a thousandth of the normal force, and four times as much.
@@ -66,31 +64,6 @@ impl StandardError {
         let share = added(added(self.model, self.noise * noise * marks.peak), self.border * marks.border);
         let [least, most] = ERROR_RANGE.map(|log| f64::from(log).exp2());
         share.clamp(least, most * (1.0 - (-f64::from(ERROR_FRACTION)).exp2()))
-    }
-}
-
-/// The standard error of a design's frames, and where confidence ends.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Confidence {
-    of: StandardError,
-    noise: f64,
-    typical_pa: Option<f64>,
-    columns: usize,
-    /// A frame with a larger one has low confidence.
-    pub(crate) most: f64,
-}
-
-impl Confidence {
-    /// That of a design, if its standard error was fitted.
-    pub(crate) fn of(design: &Design) -> Option<Self> {
-        let Algorithm { standard_error, max_standard_error: most, .. } = &design.algorithm;
-        let (noise, typical_pa, columns) = (design.input.noise, design.input.typical_pa(), design.sensor.columns);
-        standard_error.map(|of| Self { of, noise, typical_pa, columns, most: *most })
-    }
-
-    /// The standard error over `|F_z|` of the stress `b`, in which this much is left of a frame's noise.
-    pub(crate) fn share(&self, b: &[f64], noise_left: f64) -> f64 {
-        self.of.share(self.noise * noise_left, Marks::of(b, self.columns, self.typical_pa))
     }
 }
 

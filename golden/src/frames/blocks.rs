@@ -331,20 +331,5 @@ fn unit(lines: &[Line]) -> Option<(usize, String)> {
 
 /// The line, and the unit that it names.
 fn numbered(line: &Line) -> Option<(usize, String)> {
-    Some((line.number, named(line.content)?))
-}
-
-/// The unit that a line names: a known one, or else the word behind "unit".
-pub(super) fn named(line: &[u8]) -> Option<String> {
-    let text = String::from_utf8_lossy(line);
-    let is_unit = |word: &&str| {
-        let word = word.to_lowercase();
-        word.starts_with("unit") || ["unit", "units"].iter().any(|end| word.ends_with(end)) || word.contains("einheit")
-    };
-    let mut words =
-        text.split([' ', '\t', ':', '=', ',', ';', '"', '(', ')', '[', ']']).filter(|word| !word.is_empty());
-    words.find(is_unit)?;
-    let behind: Vec<&str> = words.collect();
-    let unit = behind.iter().find(|word| pascals(word).is_some()).or(behind.first())?;
-    Some(unit.replace(char::is_control, ""))
+    Some((line.number, header::unit_in(line.content)?))
 }

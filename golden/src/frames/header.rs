@@ -3,7 +3,6 @@
 use super::Clock;
 use super::layout::{Layout, Target};
 use super::names::{Open, as_text, kind_of, split, taxels as taxels_of};
-use super::text::Label;
 use crate::numbers::{correlation, rounded, sorted};
 use crate::sensor::Sensor;
 use crate::separator;
@@ -22,6 +21,15 @@ const OTHER_UNIT: f64 = 0.3;
 
 /// Correlation of a frame with the next one, at least: taxels differ by more than their noise.
 const ALIKE: f64 = 0.98;
+
+/// The first label of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Label {
+    /// A number or a time; so is a row without labels.
+    Number,
+    Word,
+    Blank,
+}
 
 /// The names of the columns, and what they say.
 #[derive(Clone, Debug, Default)]
@@ -328,4 +336,19 @@ pub(super) fn worth(unit: &str, target: &Target, sign: f64) -> Result<(Option<f6
             (Some(pascals), Some(format!("{gives}; {presses}1 {unit} is {pascals} Pa")))
         }
     })
+}
+
+/// The unit that a line names: a known one, or else the word behind "unit".
+pub(super) fn unit_in(line: &[u8]) -> Option<String> {
+    let text = String::from_utf8_lossy(line);
+    let is_unit = |word: &&str| {
+        let word = word.to_lowercase();
+        word.starts_with("unit") || ["unit", "units"].iter().any(|end| word.ends_with(end)) || word.contains("einheit")
+    };
+    let mut words =
+        text.split([' ', '\t', ':', '=', ',', ';', '"', '(', ')', '[', ']']).filter(|word| !word.is_empty());
+    words.find(is_unit)?;
+    let behind: Vec<&str> = words.collect();
+    let unit = behind.iter().find(|word| pascals(word).is_some()).or(behind.first())?;
+    Some(unit.replace(char::is_control, ""))
 }

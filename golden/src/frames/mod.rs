@@ -20,7 +20,6 @@ mod text;
 use cells::BYTE_ORDER_MARK;
 pub(crate) use cells::{Numbers, Table};
 
-use std::fmt::Write;
 use std::path::Path;
 
 pub use error::FrameError;
@@ -28,10 +27,10 @@ pub use layout::Layout;
 use layout::Target;
 use npy::Array;
 pub use stream::FrameLines;
-use text::Text;
+use text::{Lines, Text};
 
 use crate::design::Design;
-use crate::numbers::counted;
+use crate::numbers::{counted, push_row};
 use crate::output;
 use crate::sensor::Sensor;
 use crate::units::without_gaps;
@@ -152,7 +151,13 @@ pub(crate) fn between(lines: usize) -> String {
 fn read_text(path: &Path, layout: &Layout, target: &Target) -> Result<Text, FrameError> {
     let wrong = |problem: String| FrameError::array(path, problem);
     let array = match content(path)? {
-        Content::Text(bytes) => return text::read(path, &bytes, layout, target),
+        Content::Text(bytes) => {
+            let lines = Lines::new(path, layout, target);
+            return match blocks::join(path, &bytes, layout, target)? {
+                Some(blocks) => blocks.read(lines, target),
+                None => text::read(lines, &bytes),
+            };
+        }
         Content::Array(array) => array,
     };
     let [count, row @ ..] = array.shape.as_slice() else {
@@ -313,14 +318,4 @@ pub(crate) fn is_npy(path: &Path) -> bool {
 pub(crate) fn write_array(path: &Path, columns: usize, rows: &[Vec<f64>]) -> Result<(), FrameError> {
     output::write_whole(path, &npy::file(columns, rows))?;
     Ok(())
-}
-
-/// Appends one CSV row; each number is the shortest that reads back as the same float.
-pub(crate) fn push_row(text: &mut String, values: impl Iterator<Item = f64>) {
-    for (index, value) in values.enumerate() {
-        let separator = if index == 0 { "" } else { "," };
-        // Writing to a String cannot fail.
-        let _ = write!(text, "{separator}{value:?}");
-    }
-    text.push('\n');
 }

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use super::FrameError;
+use super::header::Label;
 use super::layout::{Layout, Target};
-use super::text::{Label, Lines};
+use super::text::Lines;
 use crate::design::{Design, Samples};
 use crate::separator::Separator;
 

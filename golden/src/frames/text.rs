@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::cells::{Cells, Line, Numbers, are_words};
-use super::header::{self, Header};
+use super::header::{self, Header, Label};
 use super::layout::{Layout, Target};
-use super::{FrameError, blocks, hints, is_number};
+use super::{FrameError, hints, is_number};
 use crate::geometry;
 use crate::numbers::{counted, magnitude};
 use crate::separator::{self, Separator, is_unknown, no_number};
@@ -13,15 +13,6 @@ use crate::units::{pascals, timestamp};
 
 /// Lines of means, deviations and the like at most.
 const SUMMARIES: usize = 8;
-
-/// The first label of a row.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Label {
-    /// A number or a time; so is a row without labels.
-    Number,
-    Word,
-    Blank,
-}
 
 /// Rows of a file with their lines, and what is to be said of it.
 #[derive(Clone, Debug, Default)]
@@ -218,7 +209,7 @@ impl Lines {
 
     /// Whether a line above the rows names a known unit of pressure: that of all values without one of their own.
     fn is_unit(&mut self, line: &[u8]) -> bool {
-        let unit = blocks::named(line).filter(|unit| !self.cells.has_rows && pascals(unit).is_some());
+        let unit = header::unit_in(line).filter(|unit| !self.cells.has_rows && pascals(unit).is_some());
         let is_unit = unit.is_some();
         self.unit = unit.map(|unit| (self.cells.number, unit)).or(self.unit.take());
         is_unit
@@ -370,12 +361,8 @@ impl Lines {
     }
 }
 
-/// Reads all rows of a text, see [`Lines::row`], or blocks of rows where the shape of the file says so.
-pub(super) fn read(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) -> Result<Text, FrameError> {
-    let mut lines = Lines::new(path, layout, target);
-    if let Some(blocks) = blocks::join(path, bytes, layout, target)? {
-        return blocks.read(lines, target);
-    }
+/// Reads all rows of a text that has one for each frame, see [`Lines::row`].
+pub(super) fn read(mut lines: Lines, bytes: &[u8]) -> Result<Text, FrameError> {
     let mut text = Text::default();
     let mut labels: Vec<Label> = Vec::new();
     for line in separator::lines(bytes) {

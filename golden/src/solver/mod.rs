@@ -6,6 +6,7 @@
 
 mod batch;
 pub mod cean;
+mod confidence;
 mod cores;
 pub(crate) mod reading;
 mod separate;
@@ -24,7 +25,6 @@ use std::sync::{Arc, OnceLock};
 
 use crate::contacts::{ContactForces, Finder};
 use crate::design::{Design, Outputs, PlanKind, Slip};
-use crate::estimators::standard_error::Confidence;
 use crate::estimators::{Estimate, Friction, FrictionScratch, Inputs};
 use crate::filter::FilteredMatrices;
 use crate::matrices::Matrices;
@@ -32,6 +32,7 @@ use crate::parity::COMPONENTS;
 use crate::products::batch::Blocks;
 use crate::products::{Engine, PaperMatrices, ProductList};
 use crate::reduced::ReducedMatrices;
+use confidence::Confidence;
 use reading::Reader;
 
 /// Friction, `|mu_x| + |mu_y|`, from which on a layer that is dragged shows tension somewhere. Below it a contact in the

@@ -87,6 +87,10 @@ fn other_units() {
     let design = design("sensor1-fast");
     let pascals = frames(&design);
     found(&design, &changed(&pascals, |pa| pa / 1000.0), &[Kind::Range], &["kilopascals", "sensor.pa_per_count"]);
+    // Though below the noise floor.
+    let mut noisy = design.clone();
+    noisy.algorithm.noise_floor_pa = 1000.0;
+    found(&noisy, &changed(&pascals, |pa| pa / 1000.0), &[Kind::Range], &["kilopascals"]);
     found(&design, &changed(&pascals, |pa| pa * 100.0), &[Kind::Range], &["above hardware.full_scale_pa"]);
     let counting = Design::from_toml(
         &design.to_toml().replace("depth_mm", "pa_per_count = -24.4\ndepth_mm"),

@@ -55,6 +55,21 @@ fn kinds(design: &Design, frames: &[Vec<f64>]) -> (Vec<Kind>, String) {
     (findings.iter().map(|found| found.kind).collect(), findings.iter().map(|found| format!("{found}\n")).collect())
 }
 
+/// With the keys that a recording gives, `check` finds nothing in it, however loud its noise is.
+#[test]
+fn noise_as_it_is_stated_is_nothing() {
+    for counts in [0.25, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0] {
+        for part in 0..4 {
+            let recording = frames(100, |frame, taxel| offset(taxel) + counts * noise(100 * part + frame, taxel));
+            let mut design = mat("");
+            let rest = AtRest::of(&design, &recording).unwrap();
+            design.algorithm.noise_floor_pa = rest.noise_floor_pa;
+            design.input.calibration = Some(rest.calibration(&design, &recording).unwrap());
+            assert_eq!(kinds(&design, &recording), (vec![], String::new()), "{counts} counts");
+        }
+    }
+}
+
 #[test]
 fn rest_is_told_with_offsets_tared_and_clipped() {
     let tared = frames(100, |frame, taxel| 2.0 * noise(frame, taxel));

@@ -6,6 +6,7 @@
 //! places out, the simplest that is as good as the best. What it does not better is not fitted.
 
 mod columns;
+pub mod creep;
 mod fit;
 mod folds;
 mod force;

@@ -8,6 +8,7 @@ mod module;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use golden::contacts::{Labels, SHARE};
 use golden::design::{Design, Estimator, Outputs, PlanKind, Sensor};
 use golden::matrices::{Matrices, MatrixName};
 use golden::solver::{Solver, Status};
@@ -202,6 +203,70 @@ fn the_solver_counts_as_the_hardware_does() {
                 "{name}, {kind:?}: {same} {right} {several}"
             );
         }
+    }
+}
+
+/// Rounding may move a taxel or a component across its threshold that is so near to it, in shares of the largest `|w|` or of
+/// all.
+const MARGIN: f64 = 1e-4;
+
+/// How near weights come to a threshold: those of taxels over the largest, those of components over all.
+fn distance(weight: &[f64], columns: usize) -> f64 {
+    let (largest, all) = (weight.iter().copied().fold(0.0, f64::max), weight.iter().sum::<f64>());
+    let touched: Vec<bool> = weight.iter().map(|&weight| weight > SHARE * largest).collect();
+    let mut labels = Labels::default();
+    labels.find(&touched, columns);
+    let mut sums = vec![0.0; labels.count];
+    for (component, weight) in labels.components.iter().zip(weight) {
+        if let Some(component) = component {
+            sums[*component] += weight;
+        }
+    }
+    let of_taxels = weight.iter().map(|weight| (weight / largest - SHARE).abs());
+    of_taxels.chain(sums.iter().map(|sum| (sum / all - SHARE).abs())).fold(f64::INFINITY, f64::min)
+}
+
+/// Shares from 2 to 40 % at which a count changes.
+fn changes(count: impl Fn(f64) -> usize) -> Vec<f64> {
+    let shares: Vec<f64> = (0..40).map(|step| 0.02 * 1.08_f64.powi(step)).collect();
+    let bisected = |pair: &[f64]| {
+        let (mut low, mut high) = (pair[0], pair[1]);
+        for _ in 0..30 {
+            let middle = f64::midpoint(low, high);
+            *if count(middle) == count(pair[0]) { &mut low } else { &mut high } = middle;
+        }
+        high
+    };
+    shares.windows(2).filter(|pair| count(pair[0]) != count(pair[1])).map(bisected).collect()
+}
+
+/// One contact that grows beside another until it counts: beyond the margin of rounding, hardware and solver count alike.
+#[test]
+fn counts_differ_within_the_margin_of_rounding_alone() {
+    for name in ["sensor1-fast", "sensor2-none", "sensor1-reduced"] {
+        let (plan, solver) = pair(name);
+        let sensor = &plan.design.sensor;
+        let inverse = Matrices::of(&plan.design).expect("matrices").dense(MatrixName::C33inv);
+        let mut frames = [0; 2];
+        for seed in 0..10 {
+            let [first, second] = [seed, 100 + seed].map(|seed| frame(sensor, Kind::One, seed).stress);
+            let stress = |share: f64| -> Vec<f64> { first.iter().zip(&second).map(|(a, b)| a + share * b).collect() };
+            let count = |share: f64| solver.solve(&stress(share)).expect("a whole frame").contacts;
+            let beside = |change: f64| {
+                (4..24).flat_map(move |bits| [-1.0, 1.0].map(|of| change + of * change * 0.5_f64.powi(bits)))
+            };
+            for share in changes(count).into_iter().flat_map(beside) {
+                let stress = stress(share);
+                let answer = &model_answers(&plan, &[plan.streams().packet(&stress)])[0];
+                let force = |row: usize| (0..stress.len()).map(|of| inverse[(row, of)] * stress[of]).sum::<f64>();
+                let weight: Vec<f64> = (0..stress.len()).map(|taxel| (-force(taxel)).max(0.0)).collect();
+                let distance = distance(&weight, sensor.columns);
+                let [counted, expected] = [(answer[words::COUNTERS] & 0xFF) as usize, count(share)];
+                assert!(counted == expected || distance < MARGIN, "{name}: {counted}, not {expected}, at {distance}");
+                frames[usize::from(distance < MARGIN)] += 1;
+            }
+        }
+        assert!(frames.iter().all(|&frames| frames >= 25), "{name}: {frames:?} frames beyond and within the margin");
     }
 }
 
