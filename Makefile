@@ -164,7 +164,7 @@ synth: tools build ## Yosys' count of multipliers, memories, LUT and FF beside t
 # Times are measured with a release build. tools/results.py writes its files in results/.
 BENCH_FOLDER  := $(TARGET)/bench
 BENCH_SOLVER  := $(addprefix designs/,paper.toml sensor1-reduced.toml sensor1-resultants.toml sensor1-fast.toml \
-	bed-mat.toml)
+	bed-mat.toml) xtask/designs/sensor1-fast-two.toml
 BENCH_DESIGNS := designs/sensor1-reduced.toml $(TEST_DESIGNS)/sensor2-reduced.toml designs/sensor1-fast.toml designs/sensor1-fast-64.toml \
 	designs/bed-mat.toml
 BENCH_CELLS   := sensor1-reduced sensor1-resultants sensor1-fast sensor1-fast-64 sensor1-fast-100

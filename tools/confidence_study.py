@@ -16,7 +16,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
-from estimator_study import ROOT, SIDE, STRESS_SCALE, TAXELS, designs_sums, noisy, scene, solved
+from estimator_study import ROOT, SIDE, STRESS_SCALE, TAXELS, designs_hashes, noisy, scene, solved
 
 KINDS = (
     "sliding", "tilted-along", "tilted-across", "held", "even-shear", "turned", "soft-edge", "hard-edge", "spinning",
@@ -35,7 +35,7 @@ HEAD = """\
 # from {trained} contacts of each kind at each noise, and is judged on {judged} others. Goal: 55 to 72, and 94 or more.
 # noise: standard deviation in percent of the largest reading of a frame. The designs' own s: confidence.csv.
 # command: python3 tools/confidence_study.py SPTFRA results/confidence-study.csv
-# designs (SHA-256 of file and weights): {designs}
+# designs: {designs}
 design,noise,kind,within_one,within_two
 """
 
@@ -110,7 +110,7 @@ def main() -> None:
         sys.exit(__doc__.splitlines()[0])
     sptfra, out = sys.argv[1], Path(sys.argv[2])
     sizes = {"units": UNITS, "trained": TRAINED, "judged": JUDGED}
-    lines = [HEAD.format(**sizes, designs=designs_sums(DESIGNS))]
+    lines = [HEAD.format(**sizes, designs=designs_hashes(sptfra, DESIGNS))]
     for name in DESIGNS:
         design, random = ROOT / f"designs/{name}.toml", np.random.default_rng(1)
         with tempfile.TemporaryDirectory() as folder:

@@ -6,7 +6,7 @@ Contacts that no training draws, from `sptfra scene`, with noise of 0.2 to 2 % o
 shipped designs stand candidates that are trained here, and a parametric fit. Takes half an hour.
 """
 
-import hashlib
+import json
 import os
 import subprocess
 import sys
@@ -437,23 +437,26 @@ HEAD = """\
 # frame: a plain network of {deep} units in three layers, on the frame alone; {many_samples} contacts, noise drawn anew.
 # parametric: two steps of Gauss-Newton on place, radius and force of a round contact.
 # command: python3 tools/estimator_study.py SPTFRA results/estimator-study.csv
-# designs (SHA-256 of file and weights): {designs}
+# designs: {designs}
 sensor,kind,estimator,noise,median,p95
 """
 
 
-def designs_sums(names):
-    """Designs with the sums of their files and weights, for the head of a table."""
-    sums = []
-    for name in names:
-        files = [ROOT / "designs" / (name + ending) for ending in (".toml", ".weights.csv")]
-        sums.append(f"{name} {hashlib.sha256(b''.join(file.read_bytes() for file in files)).hexdigest()[:16]}")
-    return ", ".join(sums)
+def designs_hashes(sptfra, names):
+    """Designs with their hashes, for the head of a table."""
+    hashes = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name in names:
+            design, generated = ROOT / "designs" / f"{name}.toml", Path(folder) / name
+            command = [sptfra, "generate", str(design), "--out", str(generated)]
+            subprocess.run(command, check=True, capture_output=True)
+            hashes.append(f"{name} {json.loads((generated / 'metadata.json').read_text())['design_hash']}")
+    return ", ".join(hashes)
 
 
-def head():
-    """What the table is, with the designs' sums."""
-    designs = designs_sums(f"sensor{sensor}-{name}" for sensor in PITCHES_MM for name in ("fast", "wide"))
+def head(sptfra):
+    """What the table is, with the designs' hashes."""
+    designs = designs_hashes(sptfra, (f"sensor{sensor}-{name}" for sensor in PITCHES_MM for name in ("fast", "wide")))
     sizes = {"contacts": CONTACTS, "draws": DRAWS, "units": UNITS, "many": MANY_UNITS}
     sizes |= {"twice": 2 * NOISE, "deep": " + ".join(map(str, DEEP)), "many_samples": MANY_SAMPLES}
     return HEAD.format(**sizes, noise=NOISE, half=NOISE / 2, designs=designs)
@@ -463,7 +466,7 @@ def main() -> None:
     if len(sys.argv) != 3:
         sys.exit(__doc__.splitlines()[0])
     sptfra, out = sys.argv[1], Path(sys.argv[2])
-    lines = [head()]
+    lines = [head(sptfra)]
 
     def row(sensor, kind, estimator, noise, of):
         of = np.sort(of)

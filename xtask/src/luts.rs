@@ -26,6 +26,7 @@ const ALL: &str = "all";
 const ABOUT: &str = "\
 # LUTs and flip-flops by Yosys (synth_xilinx -family xcup). Designs are those of xtask/designs/counted.toml and cells.csv.
 # A module counts with what it instantiates, but for modules that have rows of their own.
+# Designs in cells.csv have their sums there. Their modules here may be of an earlier count.
 # Errors, in percent, are those of a fit without the design; there is none of a design with a part that no other has.
 # command: make luts
 design,module,lut,ff,lut_error,ff_error,hash
@@ -48,6 +49,8 @@ pub struct Counted {
     /// Of those modules that are known.
     modules: Counts,
     whole: [f64; 2],
+    /// Whether [`BLOCKS`] has the sum.
+    in_blocks: bool,
 }
 
 #[derive(Deserialize)]
@@ -110,7 +113,7 @@ pub fn files(design: &Design) -> Vec<(String, String)> {
 /// The message of a file that is wrong.
 pub fn counted(root: &Path, statistics: Option<&Path>) -> Result<Vec<Counted>, String> {
     let mut known = known(root)?;
-    let mut counted = Vec::new();
+    let mut counted: Vec<Counted> = Vec::new();
     for design in designs(root)? {
         let plan = plan(&design)?;
         let file = statistics.map(|folder| folder.join(format!("{}.stat.json", design.name)));
@@ -120,11 +123,12 @@ pub fn counted(root: &Path, statistics: Option<&Path>) -> Result<Vec<Counted>, S
             (None, None) => continue,
         };
         let whole = [0, 1].map(|kind| modules.values().map(|count| count[kind]).sum());
-        counted.push(Counted { plan, modules, whole });
+        counted.push(Counted { plan, modules, whole, in_blocks: false });
     }
     for (name, blocks) in blocks(root)? {
         let plan = plan(&Design::load(&root.join(format!("designs/{name}.toml"))).map_err(|error| error.to_string())?)?;
-        if counted.iter().any(|of| of.plan.design.name == plan.design.name) {
+        if let Some(same) = counted.iter_mut().find(|of| of.plan.design.name == plan.design.name) {
+            same.in_blocks = true;
             continue;
         }
         let Some(&whole) = blocks.get(ALL) else { return Err(format!("{BLOCKS}: {name} has no row {ALL}")) };
@@ -133,7 +137,7 @@ pub fn counted(root: &Path, statistics: Option<&Path>) -> Result<Vec<Counted>, S
             Some((module.strip_prefix("sptfra_")?.to_owned(), *blocks.get(block.name)?))
         });
         let modules = known.filter(|(module, _)| modules(&plan).contains(&module.as_str())).collect();
-        counted.push(Counted { plan, modules, whole });
+        counted.push(Counted { plan, modules, whole, in_blocks: true });
     }
     Ok(counted)
 }
@@ -230,7 +234,7 @@ pub fn fit(counted: &[Counted]) -> Fit {
     let rows: Vec<(&str, Vec<Row>)> = order.into_iter().map(|module| (module, rows(module))).collect();
     let mut table = ABOUT.to_owned();
     let mut errors = [Vec::new(), Vec::new()];
-    for (design, Counted { plan, modules, whole }) in counted.iter().enumerate() {
+    for (design, Counted { plan, modules, whole, in_blocks }) in counted.iter().enumerate() {
         let name = &plan.design.name;
         for (module, [lut, ff]) in modules {
             let _ = writeln!(table, "{name},{module},{lut},{ff},,,");
@@ -251,7 +255,8 @@ pub fn fit(counted: &[Counted]) -> Fit {
             Some(format!("{error:.1}"))
         });
         let [lut_error, ff_error] = shown.map(Option::unwrap_or_default);
-        let ([lut, ff], hash) = (whole, plan.design.hash());
+        let [lut, ff] = whole.map(|sum| if *in_blocks { String::new() } else { sum.to_string() });
+        let hash = plan.design.hash();
         let _ = writeln!(table, "{name},{ALL},{lut},{ff},{lut_error},{ff_error},{hash}");
     }
     let mut fitted = ABOUT_FITTED.to_owned();

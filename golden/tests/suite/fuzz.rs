@@ -78,6 +78,8 @@ fn named() -> &'static [(&'static str, String)] {
         [
             (0, "sensor1-fast.weights.csv"),
             (0, "sensor2-fast.weights.csv"),
+            (0, "sensor1-fast.toml"),
+            (0, "sensor1-reduced.toml"),
             (1, "../../../designs/paper.toml"),
             (1, "../../../designs/sensor1-reduced.toml"),
         ]

@@ -11,7 +11,8 @@ use hdl_gen::plan::Plan;
 
 use crate::support::{in_parallel, shipped, workspace};
 
-const COLUMNS: &str = "design,latency_cycles,latency_us,interval_cycles,frames_per_second,dsp,ramb36,energy_uj";
+const COLUMNS: &str =
+    "design,latency_cycles,latency_us,interval_cycles,frames_per_second,dsp,ramb36,lut_estimate,energy_uj";
 
 fn run(script: &str, arguments: &[&str]) -> Output {
     let python = workspace(".venv/bin/python");
@@ -36,13 +37,13 @@ fn designs_in(folder: &Path, found: &mut Vec<PathBuf>) {
 fn row(name: &str, design: &Design) -> String {
     let plan = Plan::new(design).unwrap_or_else(|error| panic!("{name}: {error}"));
     let predicted = &figures(&plan)["predicted"];
-    let [latency, interval, dsp] =
-        ["latency_cycles", "interval_cycles", "dsp"].map(|key| predicted[key].as_u64().expect("a number"));
+    let [latency, interval, dsp, lut] = ["/latency_cycles", "/interval_cycles", "/dsp", "/logic_estimate/lut"]
+        .map(|key| predicted.pointer(key).and_then(serde_json::Value::as_u64).expect("a number"));
     let [ramb36, energy_nj] = [&predicted["bram36"], &predicted["energy_estimate"]["fabric_nj"]]
         .map(|value| value.as_f64().expect("a number"));
     let mhz = design.hardware.clock_mhz;
     let [microseconds, rate] = [latency as f64 / mhz, mhz * 1e6 / interval as f64];
-    format!("{name},{latency},{microseconds:.2},{interval},{rate:.0},{dsp},{ramb36:.1},{:.1}\n", energy_nj / 1e3)
+    format!("{name},{latency},{microseconds:.2},{interval},{rate:.0},{dsp},{ramb36:.1},{lut},{:.1}\n", energy_nj / 1e3)
 }
 
 #[test]
