@@ -8,7 +8,7 @@
 `default_nettype none
 
 module sptfra_grid_centroid #(
-    // Points along an axis, 11 or 13; the generator sets 13
+    // Points along an axis
     parameter integer SIDE = 13,
     // Points that come in a cycle: 5, the last of a row with weights of 0, or all of a row
     parameter integer AT_ONCE = 5,

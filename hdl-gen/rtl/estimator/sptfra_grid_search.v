@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Grid search: Condition 1 at SIDE x SIDE values of (mu_x, mu_y), 1/4 apart, and the centroid of its level set.
+// Grid search: Condition 1 at 13 x 13 values of (mu_x, mu_y), 1/4 apart, and the centroid of its level set.
 //
 // B = sum max(0, u0 + mu_x u1 + mu_y u2) over all taxels. An evaluator adds X of its column and Y of its row, and
 // accumulates what is above zero. A sum beyond its width stays the largest number.
 //
-//   PARALLEL     evaluators               start to first row        next row        start to done
-//   SIDE * SIDE  one a point              4 Q + 13                  1 cycle         4 Q + 49 + 4 SIDE
-//                ... two taxels a cycle   2 Q + 14                  1 cycle         2 Q + 51 + 2 SIDE
-//   SIDE         one a column, row after  4 Q + 13                  4 Q + 1 cycles  SIDE (4 Q + 4) + 49
-//                row of the grid
+//   PARALLEL  evaluators               start to first row  next row        start to done
+//   169       one a point              4 Q + 13            1 cycle         4 Q + 101
+//             ... two taxels a cycle   2 Q + 14            1 cycle         2 Q + 77
+//   13        one a column, row after  4 Q + 13            4 Q + 1 cycles  52 Q + 101
+//             row of the grid
 //
 // Q: orbits. Each row can be read again until the next start.
 
@@ -25,10 +25,8 @@ module sptfra_grid_search #(
     parameter integer DATA_BITS = 27,
     // Bits of the number of an orbit
     parameter integer ROW_WIDTH = 5,
-    // Points along an axis, 11 or 13; the generator sets 13
-    parameter integer SIDE = 13,
-    // Points evaluated at a time: all of them, or SIDE
-    parameter integer PARALLEL = SIDE * SIDE,
+    // Points evaluated at a time: all 169, or a row of 13
+    parameter integer PARALLEL = 169,
     // Taxels a cycle: 1, or 2 with all points at a time, whose rows are then weighed in one cycle each
     parameter integer TAXELS = 1,
     // Bits of a value below the leading bit of sum |b|
@@ -67,6 +65,7 @@ module sptfra_grid_search #(
 
     localparam integer ORBITS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2);
     localparam integer LAST_ORBIT = ORBITS - 1;
+    localparam integer SIDE = 13; // points along an axis
     localparam integer AT_ONCE = PARALLEL / SIDE; // rows of the grid
     localparam integer IS_SERIAL = (AT_ONCE == 1) ? 1 : 0;
     localparam integer TERM_BITS = FRACTION + 4;
@@ -77,8 +76,8 @@ module sptfra_grid_search #(
     localparam [1:0] LAST_IMAGE = 2'd0 - STEP;
     localparam [3:0] LAST_ROW = SIDE[3:0] - 4'd1;
 
-    if (((SIDE != 11) && (SIDE != 13)) || (FRACTION < 20) || (FRACTION > 24)) begin : gen_check_points
-        sptfra_error_a_side_has_11_or_13_points_and_a_value_20_to_24_bits_of_fraction invalid ();
+    if ((FRACTION < 20) || (FRACTION > 24)) begin : gen_check_fraction
+        sptfra_error_a_value_has_20_to_24_bits_of_fraction invalid ();
     end
     if ((TAXELS != 1) && ((TAXELS != 2) || (IS_SERIAL != 0))) begin : gen_check_taxels
         sptfra_error_one_taxel_a_cycle_or_two_with_all_points invalid ();

@@ -12,7 +12,7 @@
 `default_nettype none
 
 module sptfra_grid_terms #(
-    // Points along an axis, 11 or 13: with more a term would be wider
+    // Points along an axis
     parameter integer SIDE = 13,
     // Rows of the grid whose Y is wanted: SIDE, or 1
     parameter integer AT_ONCE = SIDE,
