@@ -291,17 +291,11 @@ module sptfra_grid_search #(
         end
     end
 
-    wire [SIDE*VALUE_BITS-1:0] row_0;
-    wire [SIDE*VALUE_BITS-1:0] row_next;
+    wire [SIDE*(VALUE_BITS+1)-1:0] row_0 = sums[SIDE*(VALUE_BITS+1)-1:0];
+    wire [SIDE*(VALUE_BITS+1)-1:0] row_next;
 
-    for (column = 0; column < SIDE; column = column + 1) begin : gen_values
-        wire [VALUE_BITS:0] of_column = sums[(VALUE_BITS+1)*column +: VALUE_BITS+1];
-
-        assign row_0[VALUE_BITS*column +: VALUE_BITS] = of_column[VALUE_BITS-1:0]
-            | {VALUE_BITS{of_column[VALUE_BITS]}};
-    end
     if (IS_SERIAL != 0) begin : gen_memory
-        (* ram_style = "distributed" *) reg [SIDE*VALUE_BITS-1:0] memory [0:15];
+        (* ram_style = "distributed" *) reg [SIDE*(VALUE_BITS+1)-1:0] memory [0:15];
 
         always @(posedge clock) begin
             if (giving) begin
@@ -314,9 +308,16 @@ module sptfra_grid_search #(
         assign row_next = row_0;
     end
 
-    always @(posedge clock) begin
-        if (turn) begin
-            row_values <= row_next;
+    for (column = 0; column < SIDE; column = column + 1) begin : gen_values
+        wire [VALUE_BITS:0] of_column = row_next[(VALUE_BITS+1)*column +: VALUE_BITS+1];
+
+        always @(posedge clock) begin
+            if (turn) begin
+                row_values[VALUE_BITS*column +: VALUE_BITS] <= of_column[VALUE_BITS-1:0];
+                if (of_column[VALUE_BITS]) begin
+                    row_values[VALUE_BITS*column +: VALUE_BITS] <= {VALUE_BITS{1'b1}};
+                end
+            end
         end
     end
 
