@@ -68,7 +68,8 @@ module sptfra_grid_search #(
     localparam integer SIDE = 13; // points along an axis
     localparam integer AT_ONCE = PARALLEL / SIDE; // rows of the grid
     localparam integer IS_SERIAL = (AT_ONCE == 1) ? 1 : 0;
-    localparam integer TERM_BITS = FRACTION + 4;
+    localparam integer X_BITS = FRACTION + 3;
+    localparam integer Y_BITS = FRACTION + 2;
     localparam integer VALUE_BITS = FRACTION + 2;
     localparam integer MARGIN_BITS = FRACTION - 7;
     localparam integer STAGES = 10 + TAXELS; // from a taxel's address to its tension being added to the sums
@@ -160,8 +161,8 @@ module sptfra_grid_search #(
     end
 
     // ---- Their terms in each column and row of the grid
-    wire [TAXELS*SIDE*TERM_BITS-1:0] along_x_9;
-    wire [TAXELS*AT_ONCE*TERM_BITS-1:0] along_y_9;
+    wire [TAXELS*SIDE*X_BITS-1:0] along_x_9;
+    wire [TAXELS*AT_ONCE*Y_BITS-1:0] along_y_9;
     wire [TAXELS*MARGIN_BITS-1:0] margins; // of the level set
     wire [TAXELS-1:0] clips;
     reg [3:0] pass_8; // of the terms that are formed
@@ -208,8 +209,8 @@ module sptfra_grid_search #(
             .u1         (taxels_3[27*(3*taxel + 1) +: 27]),
             .u2         (taxels_3[27*(3*taxel + 2) +: 27]),
             .row        (pass_8),
-            .along_x    (along_x_9[SIDE*TERM_BITS*taxel +: SIDE*TERM_BITS]),
-            .along_y    (along_y_9[AT_ONCE*TERM_BITS*taxel +: AT_ONCE*TERM_BITS]),
+            .along_x    (along_x_9[SIDE*X_BITS*taxel +: SIDE*X_BITS]),
+            .along_y    (along_y_9[AT_ONCE*Y_BITS*taxel +: AT_ONCE*Y_BITS]),
             .clipped    (clips[taxel])
         );
     end
@@ -232,17 +233,17 @@ module sptfra_grid_search #(
         for (column = 0; column < SIDE; column = column + 1) begin : gen_points
             // Row 0 follows on the last one
             localparam integer ABOVE = ((index == AT_ONCE - 1) ? 0 : SIDE*(index + 1)) + column;
-            wire [TAXELS*TERM_BITS-1:0] x;
-            wire [TAXELS*TERM_BITS-1:0] y;
+            wire [TAXELS*X_BITS-1:0] x;
+            wire [TAXELS*Y_BITS-1:0] y;
 
             for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_terms
-                assign x[TERM_BITS*taxel +: TERM_BITS] = along_x_9[TERM_BITS*(SIDE*taxel + column) +: TERM_BITS];
-                assign y[TERM_BITS*taxel +: TERM_BITS] = along_y_9[TERM_BITS*(AT_ONCE*taxel + index) +: TERM_BITS];
+                assign x[X_BITS*taxel +: X_BITS] = along_x_9[X_BITS*(SIDE*taxel + column) +: X_BITS];
+                assign y[Y_BITS*taxel +: Y_BITS] = along_y_9[Y_BITS*(AT_ONCE*taxel + index) +: Y_BITS];
             end
 
             sptfra_grid_point #(
                 .TAXELS     (TAXELS),
-                .TERM_BITS  (TERM_BITS),
+                .X_BITS     (X_BITS),
                 .VALUE_BITS (VALUE_BITS)
             ) point (
                 .clock   (clock),

@@ -20,8 +20,9 @@ module sptfra_grid_terms #(
     parameter integer FRACTION = 21,
     // Left shift of u before the right shift by the bits of sum |b|: to one bit finer than X
     parameter integer U_LEFT = 22,
-    // Derived: bits of a term, and of the margin
-    parameter integer TERM_BITS = FRACTION + 4,
+    // Derived: bits of X, which is below 4 powers, of Y, which is below 2, and of the margin
+    parameter integer X_BITS = FRACTION + 3,
+    parameter integer Y_BITS = FRACTION + 2,
     parameter integer MARGIN_BITS = FRACTION - 7
 ) (
     input  wire clock,
@@ -39,8 +40,8 @@ module sptfra_grid_terms #(
     // The row that is wanted of one, five cycles after u
     input  wire [3:0] row,
     // Its terms, the least mu in the lowest bits
-    output wire [SIDE*TERM_BITS-1:0] along_x,
-    output wire [AT_ONCE*TERM_BITS-1:0] along_y,
+    output wire [SIDE*X_BITS-1:0] along_x,
+    output wire [AT_ONCE*Y_BITS-1:0] along_y,
     output reg  clipped // a u of the frame was
 );
 
@@ -52,7 +53,8 @@ module sptfra_grid_terms #(
     localparam integer STEP_SHIFT = 2; // a step of mu is 2^-STEP_SHIFT
     localparam integer MULTIPLES = 7; // of a step: 0 to 6
     localparam integer MULTIPLE_BITS = U_BITS + 3;
-    localparam integer WIDE_BITS = TERM_BITS + STEP_SHIFT; // before the fraction is dropped
+    localparam integer WIDE_X = X_BITS + STEP_SHIFT; // before the fraction is dropped
+    localparam integer WIDE_Y = Y_BITS + STEP_SHIFT;
 
     // ---- Scale of the frame: the bits of sum |b|, there three cycles after start
     wire [5:0] sum_bits;
@@ -165,16 +167,15 @@ module sptfra_grid_terms #(
     for (index = 0; index < SIDE; index = index + 1) begin : gen_along_x
         localparam integer STEPS = (index < REACH) ? REACH - index : index - REACH;
         wire signed [MULTIPLE_BITS-1:0] times = multiples_5[MULTIPLE_BITS*STEPS +: MULTIPLE_BITS];
-        wire signed [WIDE_BITS-1:0] base = { {(TERM_BITS - U_BITS - 1){base_5[U_BITS]}}, base_5,
-            {STEP_SHIFT{1'b0}}};
-        wire signed [WIDE_BITS-1:0] wide = { {(WIDE_BITS - MULTIPLE_BITS){times[MULTIPLE_BITS-1]}}, times};
-        reg signed [WIDE_BITS-1:0] x_6;
+        wire signed [WIDE_X-1:0] base = { {(X_BITS - U_BITS - 1){base_5[U_BITS]}}, base_5, {STEP_SHIFT{1'b0}}};
+        wire signed [WIDE_X-1:0] wide = { {(WIDE_X - MULTIPLE_BITS){times[MULTIPLE_BITS-1]}}, times};
+        reg signed [WIDE_X-1:0] x_6;
 
         always @(posedge clock) begin
             x_6 <= (index < REACH) ? base - wide : base + wide;
         end
 
-        assign along_x[TERM_BITS*index +: TERM_BITS] = x_6[WIDE_BITS-1:STEP_SHIFT];
+        assign along_x[X_BITS*index +: X_BITS] = x_6[WIDE_X-1:STEP_SHIFT];
 
         wire _unused_x = &{1'b0, x_6[STEP_SHIFT-1:0]};
     end
@@ -182,8 +183,7 @@ module sptfra_grid_terms #(
         localparam integer STEPS = (index < REACH) ? REACH - index : index - REACH;
         wire is_negative;
         wire signed [MULTIPLE_BITS-1:0] times;
-        wire signed [WIDE_BITS-1:0] wide = { {(WIDE_BITS - MULTIPLE_BITS){times[MULTIPLE_BITS-1]}}, times};
-        reg signed [WIDE_BITS-1:0] y_6;
+        reg signed [WIDE_Y-1:0] y_6;
 
         if (AT_ONCE == 1) begin : gen_one
             wire [MULTIPLES*MULTIPLE_BITS-1:0] of_u2
@@ -200,10 +200,10 @@ module sptfra_grid_terms #(
         end
 
         always @(posedge clock) begin
-            y_6 <= is_negative ? -wide : wide;
+            y_6 <= is_negative ? -times : times;
         end
 
-        assign along_y[TERM_BITS*index +: TERM_BITS] = y_6[WIDE_BITS-1:STEP_SHIFT];
+        assign along_y[Y_BITS*index +: Y_BITS] = y_6[WIDE_Y-1:STEP_SHIFT];
 
         wire _unused_y = &{1'b0, y_6[STEP_SHIFT-1:0]};
     end
