@@ -65,7 +65,7 @@ module sptfra_features #(
     // ---- Scale, of the frame that is searched: sum |b|, its leading bit at the top
     wire [5:0] found_bits;
     reg [5:0] next_sum_bits;
-    reg [39:0] sum_octets;
+    reg [39:0] sum_fours;
     reg [39:0] normalised;
     reg [2:0] prepare; // cycles since the start
     wire [5:0] to_top = SUM_BITS[5:0] - next_sum_bits;
@@ -106,8 +106,8 @@ module sptfra_features #(
 
     always @(posedge clock) begin
         next_sum_bits <= found_bits;
-        sum_octets <= stress_sum << {to_top[5:3], 3'd0};
-        normalised <= sum_octets << to_top[2:0];
+        sum_fours <= stress_sum << {to_top[5:2], 2'd0};
+        normalised <= sum_fours << to_top[1:0];
         if (prepare != 3'd0) begin
             prepare <= prepare + 3'd1;
         end

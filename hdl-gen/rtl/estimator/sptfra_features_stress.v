@@ -216,8 +216,8 @@ module sptfra_features_stress #(
         wire signed [44:0] product;
         wire signed [SHARE_BITS-1:0] wide = { {(STRESS_LEFT + 1){product[44]}}, product[43:0]};
         reg signed [SHARE_BITS-1:0] scaled;
-        reg signed [SHARE_BITS-1:0] octets;
-        wire signed [SHARE_BITS-1:0] bits = octets >>> sum_bits[2:0];
+        reg signed [SHARE_BITS-1:0] fours;
+        wire signed [SHARE_BITS-1:0] bits = fours >>> sum_bits[1:0];
         reg [STRESS_BITS-1:0] exact;
         reg sign;
         reg is_whole; // exact has all of it
@@ -236,12 +236,12 @@ module sptfra_features_stress #(
 
         always @(posedge clock) begin
             scaled <= wide <<< STRESS_LEFT;
-            octets <= scaled >>> {sum_bits[5:3], 3'd0};
+            fours <= scaled >>> {sum_bits[5:2], 2'd0};
             exact <= bits[STRESS_BITS-1:0];
-            sign <= octets[SHARE_BITS-1];
-            // Of the bits above, those that a shift of up to 7 brings down, and the others
-            is_whole <= (bits[STRESS_BITS+6:STRESS_BITS-1] == {8{octets[SHARE_BITS-1]}})
-                && (octets[SHARE_BITS-1:STRESS_BITS+7] == {(SHARE_BITS - STRESS_BITS - 7){octets[SHARE_BITS-1]}});
+            sign <= fours[SHARE_BITS-1];
+            // Of the bits above, those that a shift of up to 3 brings down, and the others
+            is_whole <= (bits[STRESS_BITS+2:STRESS_BITS-1] == {4{fours[SHARE_BITS-1]}})
+                && (fours[SHARE_BITS-1:STRESS_BITS+3] == {(SHARE_BITS - STRESS_BITS - 3){fours[SHARE_BITS-1]}});
             share <= fits[index] ? exact : {sign, {(STRESS_BITS - 2){!sign}}, 1'b1};
         end
 

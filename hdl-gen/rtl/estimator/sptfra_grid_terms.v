@@ -59,9 +59,9 @@ module sptfra_grid_terms #(
     // ---- Scale of the frame: the bits of sum |b|, there three cycles after start
     wire [5:0] sum_bits;
     reg [5:0] scale; // the same, from the fourth cycle on
-    reg [39+FRACTION-SHARE_SHIFT:0] sum_octets;
+    reg [39+FRACTION-SHARE_SHIFT:0] sum_fours; // a shift by fours, then by 0 to 3: each bit is one of four in each LUT
     reg [39+FRACTION-SHARE_SHIFT:0] sum_shifted;
-    reg [26+FRACTION-SHARE_SHIFT:0] largest_octets;
+    reg [26+FRACTION-SHARE_SHIFT:0] largest_fours;
     reg [26+FRACTION-SHARE_SHIFT:0] largest_shifted;
     wire [FRACTION-SHARE_SHIFT-1:0] dead_zone = largest_shifted[FRACTION-SHARE_SHIFT-1:0];
 
@@ -75,10 +75,10 @@ module sptfra_grid_terms #(
 
     always @(posedge clock) begin
         scale <= sum_bits;
-        sum_octets <= {stress_sum, {(FRACTION - SHARE_SHIFT){1'b0}}} >> {scale[5:3], 3'd0};
-        sum_shifted <= sum_octets >> scale[2:0];
-        largest_octets <= {largest, {(FRACTION - SHARE_SHIFT){1'b0}}} >> {scale[5:3], 3'd0};
-        largest_shifted <= largest_octets >> scale[2:0];
+        sum_fours <= {stress_sum, {(FRACTION - SHARE_SHIFT){1'b0}}} >> {scale[5:2], 2'd0};
+        sum_shifted <= sum_fours >> scale[1:0];
+        largest_fours <= {largest, {(FRACTION - SHARE_SHIFT){1'b0}}} >> {scale[5:2], 2'd0};
+        largest_shifted <= largest_fours >> scale[1:0];
     end
 
     // One more, so that the least value is below the level in any case
@@ -94,8 +94,8 @@ module sptfra_grid_terms #(
 
     for (index = 0; index < 3; index = index + 1) begin : gen_u
         wire signed [WIDE-1:0] wide = { {(WIDE - 27){given[27*index + 26]}}, given[27*index +: 27]} << U_LEFT;
-        reg signed [WIDE-1:0] octets_1;
-        wire signed [WIDE-1:0] bits_1 = octets_1 >>> scale[2:0];
+        reg signed [WIDE-1:0] fours_1;
+        wire signed [WIDE-1:0] bits_1 = fours_1 >>> scale[1:0];
         reg signed [TWICE_BITS-1:0] twice_2;
         reg sign_2;
         reg is_whole_2; // twice_2 has all of it
@@ -105,12 +105,12 @@ module sptfra_grid_terms #(
             && (rounded_2[TWICE_BITS-1:U_BITS-1] == {(TWICE_BITS - U_BITS + 1){rounded_2[TWICE_BITS-1]}});
 
         always @(posedge clock) begin
-            octets_1 <= wide >>> {scale[5:3], 3'd0};
+            fours_1 <= wide >>> {scale[5:2], 2'd0};
             twice_2 <= bits_1[TWICE_BITS-1:0];
-            sign_2 <= octets_1[WIDE-1];
-            // Of the bits above, those that a shift of up to 7 brings down, and the others
-            is_whole_2 <= (bits_1[TWICE_BITS+6:TWICE_BITS-1] == {8{octets_1[WIDE-1]}})
-                && (octets_1[WIDE-1:TWICE_BITS+7] == {(WIDE - TWICE_BITS - 7){octets_1[WIDE-1]}});
+            sign_2 <= fours_1[WIDE-1];
+            // Of the bits above, those that a shift of up to 3 brings down, and the others
+            is_whole_2 <= (bits_1[TWICE_BITS+2:TWICE_BITS-1] == {4{fours_1[WIDE-1]}})
+                && (fours_1[WIDE-1:TWICE_BITS+3] == {(WIDE - TWICE_BITS - 3){fours_1[WIDE-1]}});
             normal_3 <= fits_2 ? rounded_2[U_BITS-1:0] : {sign_2, {(U_BITS - 1){!sign_2}}};
         end
 
