@@ -91,7 +91,8 @@ module sptfra_features #(
     sptfra_ratio #(
         .WIDTH        (SUM_BITS),
         .INTEGER_BITS (1),
-        .BITS         (RECIPROCAL_BITS + 2)
+        .BITS         (RECIPROCAL_BITS + 2),
+        .QUOTIENTS    (1)
     ) inverse (
         .clock       (clock),
         .reset       (reset),
@@ -203,7 +204,7 @@ module sptfra_features #(
         .start       (stresses_there),
         .numerator_x (moment_x),
         .numerator_y (moment_y),
-        .denominator (weight_sum),
+        .denominator (weight_sum | {47'd0, nothing}),
         .done        (features_done),
         .quotient_x  (ratio_x),
         .quotient_y  (ratio_y)
@@ -225,8 +226,8 @@ module sptfra_features #(
         .share_orbit  (share_orbit),
         .shares       (shares),
         .start        (window_start),
-        .centroid_x   (nothing ? {CENTRE_BITS{1'b0}} : ratio_x),
-        .centroid_y   (nothing ? {CENTRE_BITS{1'b0}} : ratio_y),
+        .centroid_x   (ratio_x),
+        .centroid_y   (ratio_y),
         .mu_x         (mu_x),
         .mu_y         (mu_y),
         .input_valid  (input_valid),

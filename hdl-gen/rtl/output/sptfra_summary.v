@@ -216,7 +216,8 @@ module sptfra_summary #(
     sptfra_ratio #(
         .WIDTH        (38),
         .INTEGER_BITS (7),
-        .BITS         (33)
+        .BITS         (33),
+        .QUOTIENTS    (1)
     ) ratio (
         .clock       (clock),
         .reset       (reset),
