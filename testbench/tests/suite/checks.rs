@@ -76,8 +76,8 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
         (
             reduced(),
             "sptfra_we",
-            "pull_waits <= valid[3];",
-            "pull_waits <= write_valid && !pull_waits;",
+            "valid <= {valid[4:1], taxel_y};",
+            "valid <= {valid[4:2], taxel_y, taxel_y};",
             "check_delay.v",
         ),
         (paper(), "sptfra_we", "write_valid <= taxel_y;", "write_valid <= taxel_y && !write_valid;", "check_delay.v"),
