@@ -24,6 +24,8 @@ module sptfra_direction #(
     input  wire clear, // for a new frame, and after a reset
     input  wire [26:0] noise, // of a taxel, in steps of the stress
     input  wire valid,
+    input  wire [5:0] x, // of the taxel
+    input  wire [5:0] y,
     input  wire tensile,
     input  wire [26:0] magnitude,
     // All stresses are in, the last one maybe in this cycle
@@ -42,20 +44,14 @@ module sptfra_direction #(
     localparam signed [47:0] PITCH_HALF = 48'sd1 <<< (PITCH_FRACTION - 1);
     localparam integer X_WIDTH = (COLUMNS <= 2) ? 1 : $clog2(COLUMNS);
     localparam integer Y_WIDTH = (ROWS <= 2) ? 1 : $clog2(ROWS);
-    localparam integer LAST_COLUMN = COLUMNS - 1;
     // An index is multiplied in two halves
     localparam integer X_HALF = (X_WIDTH + 1) / 2;
     localparam integer Y_HALF = (Y_WIDTH + 1) / 2;
 
-    // ---- Where the stress belongs, and its moments
-    reg [X_WIDTH-1:0] column;
-    reg [Y_WIDTH-1:0] row;
+    // ---- Moments of the stress
     reg compression_seen;
     reg tension_seen;
-    wire last_column = (column == LAST_COLUMN[X_WIDTH-1:0]);
     wire above_floor = (magnitude > noise);
-    wire [2*X_HALF-1:0] column_wide = {{(2*X_HALF-X_WIDTH){1'b0}}, column};
-    wire [2*Y_HALF-1:0] row_wide = {{(2*Y_HALF-Y_WIDTH){1'b0}}, row};
     wire [26+X_HALF:0] lower_x;
     wire [26+X_HALF:0] upper_x;
     wire [26+Y_HALF:0] lower_y;
@@ -67,7 +63,7 @@ module sptfra_direction #(
         .INDEX_WIDTH (X_HALF)
     ) times_lower_x (
         .number  (magnitude),
-        .index   (column_wide[X_HALF-1:0]),
+        .index   (x[X_HALF-1:0]),
         .product (lower_x)
     );
 
@@ -75,7 +71,7 @@ module sptfra_direction #(
         .INDEX_WIDTH (X_HALF)
     ) times_upper_x (
         .number  (magnitude),
-        .index   (column_wide[2*X_HALF-1:X_HALF]),
+        .index   (x[2*X_HALF-1:X_HALF]),
         .product (upper_x)
     );
 
@@ -83,7 +79,7 @@ module sptfra_direction #(
         .INDEX_WIDTH (Y_HALF)
     ) times_lower_y (
         .number  (magnitude),
-        .index   (row_wide[Y_HALF-1:0]),
+        .index   (y[Y_HALF-1:0]),
         .product (lower_y)
     );
 
@@ -91,7 +87,7 @@ module sptfra_direction #(
         .INDEX_WIDTH (Y_HALF)
     ) times_upper_y (
         .number  (magnitude),
-        .index   (row_wide[2*Y_HALF-1:Y_HALF]),
+        .index   (y[2*Y_HALF-1:Y_HALF]),
         .product (upper_y)
     );
 
@@ -99,12 +95,8 @@ module sptfra_direction #(
         if (valid) begin
             compression_seen <= compression_seen || (!tensile && above_floor);
             tension_seen <= tension_seen || (tensile && above_floor);
-            column <= last_column ? {X_WIDTH{1'b0}} : column + 1'b1;
-            row <= last_column ? row + 1'b1 : row;
         end
         if (clear) begin
-            column <= {X_WIDTH{1'b0}};
-            row <= {Y_WIDTH{1'b0}};
             compression_seen <= 1'b0;
             tension_seen <= 1'b0;
         end
@@ -256,7 +248,7 @@ module sptfra_direction #(
     end
 
     // The scaled difference has at most 43 bits
-    wire _unused = &{1'b0, rounded};
+    wire _unused = &{1'b0, rounded, x, y};
 
 endmodule
 

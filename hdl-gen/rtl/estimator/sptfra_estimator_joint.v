@@ -5,6 +5,9 @@
 //
 // Three stages, each with its own frame (sptfra_joint_stages): search, feature window (with NETWORK) and correction.
 // u_q of the next frame may arrive meanwhile.
+//
+// Latency of the stages: EXPECTED_SEARCH_LATENCY, EXPECTED_FEATURES_LATENCY, and 11 cycles (with NETWORK), those of the
+// network and of the friction. Interval: that of the longest stage.
 
 `default_nettype none
 
@@ -16,10 +19,8 @@ module sptfra_estimator_joint #(
     parameter integer CHANNELS = 4,
     // Bits of u_q
     parameter integer DATA_BITS = 27,
-    // Points of the grid along an axis
-    parameter integer SIDE = 13,
-    // Points evaluated at a time: all of them, or SIDE
-    parameter integer PARALLEL = SIDE * SIDE,
+    // Points of the grid evaluated at a time: all 169, or a row of 13
+    parameter integer PARALLEL = 169,
     // Taxels a cycle in the search: 1, or 2 with all points at a time
     parameter integer TAXELS = 1,
     // Bits of a value of the search below the leading bit of sum |b|
@@ -188,7 +189,6 @@ module sptfra_estimator_joint #(
         .ROWS                    (ROWS),
         .DATA_BITS               (DATA_BITS),
         .ROW_WIDTH               (ROW_WIDTH),
-        .SIDE                    (SIDE),
         .PARALLEL                (PARALLEL),
         .TAXELS                  (TAXELS),
         .FRACTION                (FRACTION),

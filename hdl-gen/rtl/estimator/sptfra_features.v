@@ -65,7 +65,7 @@ module sptfra_features #(
     // ---- Scale, of the frame that is searched: sum |b|, its leading bit at the top
     wire [5:0] found_bits;
     reg [5:0] next_sum_bits;
-    reg [39:0] sum_octets;
+    reg [39:0] sum_fours;
     reg [39:0] normalised;
     reg [2:0] prepare; // cycles since the start
     wire [5:0] to_top = SUM_BITS[5:0] - next_sum_bits;
@@ -91,7 +91,8 @@ module sptfra_features #(
     sptfra_ratio #(
         .WIDTH        (SUM_BITS),
         .INTEGER_BITS (1),
-        .BITS         (RECIPROCAL_BITS + 2)
+        .BITS         (RECIPROCAL_BITS + 2),
+        .QUOTIENTS    (1)
     ) inverse (
         .clock       (clock),
         .reset       (reset),
@@ -106,8 +107,8 @@ module sptfra_features #(
 
     always @(posedge clock) begin
         next_sum_bits <= found_bits;
-        sum_octets <= stress_sum << {to_top[5:3], 3'd0};
-        normalised <= sum_octets << to_top[2:0];
+        sum_fours <= stress_sum << {to_top[5:2], 2'd0};
+        normalised <= sum_fours << to_top[1:0];
         if (prepare != 3'd0) begin
             prepare <= prepare + 3'd1;
         end
@@ -203,7 +204,7 @@ module sptfra_features #(
         .start       (stresses_there),
         .numerator_x (moment_x),
         .numerator_y (moment_y),
-        .denominator (weight_sum),
+        .denominator (weight_sum | {47'd0, nothing}),
         .done        (features_done),
         .quotient_x  (ratio_x),
         .quotient_y  (ratio_y)
@@ -225,8 +226,8 @@ module sptfra_features #(
         .share_orbit  (share_orbit),
         .shares       (shares),
         .start        (window_start),
-        .centroid_x   (nothing ? {CENTRE_BITS{1'b0}} : ratio_x),
-        .centroid_y   (nothing ? {CENTRE_BITS{1'b0}} : ratio_y),
+        .centroid_x   (ratio_x),
+        .centroid_y   (ratio_y),
         .mu_x         (mu_x),
         .mu_y         (mu_y),
         .input_valid  (input_valid),

@@ -49,9 +49,6 @@ module sptfra_features_stress #(
     localparam integer LAST_ORBIT_COLUMN = ORBIT_COLUMNS - 1;
     localparam integer LAST_COLUMN = COLUMNS - 1;
     localparam integer LAST_ROW = ROWS - 1;
-    // 16 fraction bits of the friction, two by which n is coarser than u
-    localparam integer NORMAL_SHIFT = 18;
-    localparam signed [47:0] NORMAL_HALF = 48'sd1 <<< (NORMAL_SHIFT - 1);
     localparam integer STRESS_BITS = 25; // of a share
     localparam integer SHARE_BITS = 45 + STRESS_LEFT; // before it is clipped
     localparam integer STAGES = 11; // from an orbit's second cycle to its shares
@@ -105,9 +102,9 @@ module sptfra_features_stress #(
         wire signed [26:0] u1 = u_values[27*(4 + index) +: 27];
         wire signed [26:0] u2 = u_values[27*(8 + index) +: 27];
         reg signed [26:0] u0_2; // from two cycles after the second one of its orbit on
-        reg signed [26:0] u0_4;
-        wire signed [47:0] friction;
-        wire signed [47:0] rounded = friction + { {5{u0_4[26]}}, u0_4, 16'd0} + NORMAL_HALF;
+        reg signed [27:0] u0_4; // with half a step of n, which is four of u
+        wire signed [47:0] friction; // 16 fraction bits, which carry nothing into the sum
+        wire signed [31:0] rounded = friction[47:16] + { {4{u0_4[27]}}, u0_4};
         reg signed [26:0] normal;
         reg signed [26:0] compression;
 
@@ -126,10 +123,10 @@ module sptfra_features_stress #(
                 u0_2 <= u0;
             end
             if (seconds[3]) begin
-                u0_4 <= u0_2;
+                u0_4 <= {u0_2[26], u0_2} + 28'sd2;
             end
             if (seconds[4]) begin
-                normal <= rounded[NORMAL_SHIFT +: 27];
+                normal <= rounded[2 +: 27];
             end
             compression <= normal[26] ? -normal : 27'd0;
         end
@@ -137,7 +134,7 @@ module sptfra_features_stress #(
         assign normals[27*index +: 27] = normal;
         assign compressions[27*index +: 27] = compression;
 
-        wire _unused = &{1'b0, rounded};
+        wire _unused = &{1'b0, rounded, friction};
     end
 
     // ---- Moments of the compression, index k: k cycles after an orbit's second one. One half, then the other
@@ -216,8 +213,8 @@ module sptfra_features_stress #(
         wire signed [44:0] product;
         wire signed [SHARE_BITS-1:0] wide = { {(STRESS_LEFT + 1){product[44]}}, product[43:0]};
         reg signed [SHARE_BITS-1:0] scaled;
-        reg signed [SHARE_BITS-1:0] octets;
-        wire signed [SHARE_BITS-1:0] bits = octets >>> sum_bits[2:0];
+        reg signed [SHARE_BITS-1:0] fours;
+        wire signed [SHARE_BITS-1:0] bits = fours >>> sum_bits[1:0];
         reg [STRESS_BITS-1:0] exact;
         reg sign;
         reg is_whole; // exact has all of it
@@ -236,12 +233,12 @@ module sptfra_features_stress #(
 
         always @(posedge clock) begin
             scaled <= wide <<< STRESS_LEFT;
-            octets <= scaled >>> {sum_bits[5:3], 3'd0};
+            fours <= scaled >>> {sum_bits[5:2], 2'd0};
             exact <= bits[STRESS_BITS-1:0];
-            sign <= octets[SHARE_BITS-1];
-            // Of the bits above, those that a shift of up to 7 brings down, and the others
-            is_whole <= (bits[STRESS_BITS+6:STRESS_BITS-1] == {8{octets[SHARE_BITS-1]}})
-                && (octets[SHARE_BITS-1:STRESS_BITS+7] == {(SHARE_BITS - STRESS_BITS - 7){octets[SHARE_BITS-1]}});
+            sign <= fours[SHARE_BITS-1];
+            // Of the bits above, those that a shift of up to 3 brings down, and the others
+            is_whole <= (bits[STRESS_BITS+2:STRESS_BITS-1] == {4{fours[SHARE_BITS-1]}})
+                && (fours[SHARE_BITS-1:STRESS_BITS+3] == {(SHARE_BITS - STRESS_BITS - 3){fours[SHARE_BITS-1]}});
             share <= fits[index] ? exact : {sign, {(STRESS_BITS - 2){!sign}}, 1'b1};
         end
 

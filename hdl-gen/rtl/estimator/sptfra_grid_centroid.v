@@ -8,7 +8,7 @@
 `default_nettype none
 
 module sptfra_grid_centroid #(
-    // Points along an axis, 11 or 13; the generator sets 13
+    // Points along an axis
     parameter integer SIDE = 13,
     // Points that come in a cycle: 5, the last of a row with weights of 0, or all of a row
     parameter integer AT_ONCE = 5,
@@ -39,6 +39,8 @@ module sptfra_grid_centroid #(
     // of a row at once a cycle more from 3 on
     localparam integer GROUP_BITS = WEIGHT_BITS + ((FIVES == 1) ? 4 : 7); // of the sum of them, times up to 4, or 14
     localparam integer STAGES = (FIVES == 1) ? 2 : 3; // to both sums of those of a cycle
+    localparam integer SUM_BITS = WEIGHT_BITS + 8; // of all weights, which need two less
+    localparam integer MOMENT_BITS = SUM_BITS + 1; // of a moment's magnitude, up to REACH times their sum
     wire [FIVES*GROUP_BITS-1:0] sums_2; // of each five
     wire [FIVES*GROUP_BITS-1:0] moments_2; // ... about their own first
     wire [GROUP_BITS-1:0] group_sum; // of all
@@ -48,8 +50,8 @@ module sptfra_grid_centroid #(
     reg first;
     reg [STAGES:1] valids;
     wire group_valid = valids[STAGES];
-    reg [47:0] weight_sum;
-    reg [47:0] moment_within;
+    reg [SUM_BITS-1:0] weight_sum;
+    reg [MOMENT_BITS:0] moment_within;
     wire signed [47:0] moment_of_first;
     wire signed [47:0] moment_y;
     localparam signed [17:0] LEAST = -REACH[17:0];
@@ -135,15 +137,15 @@ module sptfra_grid_centroid #(
         valids <= {valids[STAGES-1:1], valid};
         if (group_valid) begin
             first <= 1'b0;
-            weight_sum <= weight_sum + { {(48 - GROUP_BITS){1'b0}}, group_sum};
-            moment_within <= moment_within + { {(48 - GROUP_BITS){1'b0}}, group_moment};
+            weight_sum <= weight_sum + { {(SUM_BITS - GROUP_BITS){1'b0}}, group_sum};
+            moment_within <= moment_within + { {(MOMENT_BITS + 1 - GROUP_BITS){1'b0}}, group_moment};
             column <= (column == GREATEST_FIRST) ? LEAST : column + STEP;
             row <= (column == GREATEST_FIRST) ? row + 18'sd1 : row;
         end
         if (start) begin
             first <= 1'b1;
-            weight_sum <= 48'd0;
-            moment_within <= 48'd0;
+            weight_sum <= {SUM_BITS{1'b0}};
+            moment_within <= {(MOMENT_BITS + 1){1'b0}};
             column <= LEAST;
             row <= LEAST;
         end
@@ -157,25 +159,25 @@ module sptfra_grid_centroid #(
     localparam integer RATIO_BITS = WHOLE_BITS + 14;
     localparam integer DIVIDE_STAGES = 5 + STAGES; // from the last weights to the division
     reg [DIVIDE_STAGES:1] drains;
-    reg signed [47:0] moment_x_6;
-    reg signed [47:0] moment_y_6;
-    reg [47:0] magnitude_x_7;
-    reg [47:0] magnitude_y_7;
+    reg signed [MOMENT_BITS:0] moment_x_6;
+    reg signed [MOMENT_BITS:0] moment_y_6;
+    reg [MOMENT_BITS:0] magnitude_x_7;
+    reg [MOMENT_BITS:0] magnitude_y_7;
     wire divide_done;
     wire [RATIO_BITS-1:0] ratio_x;
     wire [RATIO_BITS-1:0] ratio_y;
 
     sptfra_ratio #(
-        .WIDTH        (48),
+        .WIDTH        (MOMENT_BITS),
         .INTEGER_BITS (WHOLE_BITS),
         .BITS         (RATIO_BITS)
     ) ratio (
         .clock       (clock),
         .reset       (reset),
         .start       (drains[DIVIDE_STAGES]),
-        .numerator_x (magnitude_x_7),
-        .numerator_y (magnitude_y_7),
-        .denominator (weight_sum),
+        .numerator_x (magnitude_x_7[MOMENT_BITS-1:0]),
+        .numerator_y (magnitude_y_7[MOMENT_BITS-1:0]),
+        .denominator ({1'b0, weight_sum}),
         .done        (divide_done),
         .quotient_x  (ratio_x),
         .quotient_y  (ratio_y)
@@ -183,14 +185,14 @@ module sptfra_grid_centroid #(
 
     always @(posedge clock) begin
         drains <= {drains[DIVIDE_STAGES-1:1], last};
-        moment_x_6 <= moment_of_first + moment_within;
-        moment_y_6 <= moment_y;
-        magnitude_x_7 <= moment_x_6[47] ? -moment_x_6 : moment_x_6;
-        magnitude_y_7 <= moment_y_6[47] ? -moment_y_6 : moment_y_6;
+        moment_x_6 <= moment_of_first[MOMENT_BITS:0] + moment_within;
+        moment_y_6 <= moment_y[MOMENT_BITS:0];
+        magnitude_x_7 <= moment_x_6[MOMENT_BITS] ? -moment_x_6 : moment_x_6;
+        magnitude_y_7 <= moment_y_6[MOMENT_BITS] ? -moment_y_6 : moment_y_6;
         done <= divide_done;
         if (divide_done) begin
-            mu_x <= moment_x_6[47] ? -{1'b0, ratio_x} : {1'b0, ratio_x};
-            mu_y <= moment_y_6[47] ? -{1'b0, ratio_y} : {1'b0, ratio_y};
+            mu_x <= moment_x_6[MOMENT_BITS] ? -{1'b0, ratio_x} : {1'b0, ratio_x};
+            mu_y <= moment_y_6[MOMENT_BITS] ? -{1'b0, ratio_y} : {1'b0, ratio_y};
         end
         if (reset) begin
             drains <= {DIVIDE_STAGES{1'b0}};
@@ -198,7 +200,7 @@ module sptfra_grid_centroid #(
         end
     end
 
-    wire _unused = &{1'b0, group_sum};
+    wire _unused = &{1'b0, group_sum, moment_of_first, moment_y, magnitude_x_7, magnitude_y_7};
 
 endmodule
 

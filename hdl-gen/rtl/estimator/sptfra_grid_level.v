@@ -12,7 +12,7 @@
 `default_nettype none
 
 module sptfra_grid_level #(
-    // Points along an axis, 11 or 13; the generator sets 13
+    // Points along an axis
     parameter integer SIDE = 13,
     // Points weighed in a cycle: 5, or all of a row
     parameter integer AT_ONCE = 5,

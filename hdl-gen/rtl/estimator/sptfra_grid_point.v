@@ -11,8 +11,8 @@
 module sptfra_grid_point #(
     // Taxels a cycle
     parameter integer TAXELS = 1,
-    // Bits of a term
-    parameter integer TERM_BITS = 25,
+    // Bits of x; y has one less
+    parameter integer X_BITS = 24,
     // Bits of a sum
     parameter integer VALUE_BITS = 23
 ) (
@@ -21,13 +21,13 @@ module sptfra_grid_point #(
     input  wire nothing, // no taxel is there
     input  wire count, // a tension, or the row above, is taken
     input  wire turn, // the row above
-    input  wire [TAXELS*TERM_BITS-1:0] x,
-    input  wire [TAXELS*TERM_BITS-1:0] y,
+    input  wire [TAXELS*X_BITS-1:0] x,
+    input  wire [TAXELS*(X_BITS-1)-1:0] y,
     input  wire [VALUE_BITS:0] above,
     output wire [VALUE_BITS:0] sum
 );
 
-    localparam integer ONE_BITS = TERM_BITS - 2; // of a taxel's tension
+    localparam integer ONE_BITS = X_BITS - 1; // of a taxel's tension
     localparam integer TENSION_BITS = ONE_BITS - 1 + TAXELS; // of the taxels of a cycle
 
     // For each point its own: a tool puts a row's points where there is room, all over a device
@@ -47,18 +47,18 @@ module sptfra_grid_point #(
     genvar taxel;
 
     for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_tensions
-        wire signed [TERM_BITS-1:0] along_x = x[TERM_BITS*taxel +: TERM_BITS];
-        wire signed [TERM_BITS-1:0] along_y = y[TERM_BITS*taxel +: TERM_BITS];
-        wire signed [TERM_BITS-1:0] stress = along_x + along_y;
+        wire [X_BITS-1:0] along_x = x[X_BITS*taxel +: X_BITS];
+        wire [X_BITS-2:0] along_y = y[(X_BITS-1)*taxel +: X_BITS-1];
+        wire [X_BITS:0] stress = {along_x[X_BITS-1], along_x} + { {2{along_y[X_BITS-2]}}, along_y};
         reg presses_1;
         reg [ONE_BITS-1:0] stress_1;
         reg [ONE_BITS-1:0] tension_2;
 
-        wire _unused_stress = &{1'b0, stress[TERM_BITS-2]}; // of a tension, which is below four powers, 0
+        wire _unused_stress = &{1'b0, stress[X_BITS-1]}; // of a tension, which is below four powers, 0
 
         // The sign waits in a register of its own: it resets all bits
         always @(posedge clock) begin
-            presses_1 <= stress[TERM_BITS-1];
+            presses_1 <= stress[X_BITS];
             if (is_nothing) begin
                 presses_1 <= 1'b1;
             end

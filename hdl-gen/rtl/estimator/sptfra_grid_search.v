@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Grid search: Condition 1 at SIDE x SIDE values of (mu_x, mu_y), 1/4 apart, and the centroid of its level set.
+// Grid search: Condition 1 at 13 x 13 values of (mu_x, mu_y), 1/4 apart, and the centroid of its level set.
 //
 // B = sum max(0, u0 + mu_x u1 + mu_y u2) over all taxels. An evaluator adds X of its column and Y of its row, and
 // accumulates what is above zero. A sum beyond its width stays the largest number.
 //
-//   PARALLEL     evaluators               start to first row        next row        start to done
-//   SIDE * SIDE  one a point              4 Q + 13                  1 cycle         4 Q + 49 + 4 SIDE
-//                ... two taxels a cycle   2 Q + 14                  1 cycle         2 Q + 51 + 2 SIDE
-//   SIDE         one a column, row after  4 Q + 13                  4 Q + 1 cycles  SIDE (4 Q + 4) + 49
-//                row of the grid
+//   PARALLEL  evaluators               start to first row  next row        start to done
+//   169       one a point              4 Q + 13            1 cycle         4 Q + 101
+//             ... two taxels a cycle   2 Q + 14            1 cycle         2 Q + 77
+//   13        one a column, row after  4 Q + 13            4 Q + 1 cycles  52 Q + 101
+//             row of the grid
 //
 // Q: orbits. Each row can be read again until the next start.
 
@@ -25,10 +25,8 @@ module sptfra_grid_search #(
     parameter integer DATA_BITS = 27,
     // Bits of the number of an orbit
     parameter integer ROW_WIDTH = 5,
-    // Points along an axis, 11 or 13; the generator sets 13
-    parameter integer SIDE = 13,
-    // Points evaluated at a time: all of them, or SIDE
-    parameter integer PARALLEL = SIDE * SIDE,
+    // Points evaluated at a time: all 169, or a row of 13
+    parameter integer PARALLEL = 169,
     // Taxels a cycle: 1, or 2 with all points at a time, whose rows are then weighed in one cycle each
     parameter integer TAXELS = 1,
     // Bits of a value below the leading bit of sum |b|
@@ -67,9 +65,11 @@ module sptfra_grid_search #(
 
     localparam integer ORBITS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2);
     localparam integer LAST_ORBIT = ORBITS - 1;
+    localparam integer SIDE = 13; // points along an axis
     localparam integer AT_ONCE = PARALLEL / SIDE; // rows of the grid
     localparam integer IS_SERIAL = (AT_ONCE == 1) ? 1 : 0;
-    localparam integer TERM_BITS = FRACTION + 4;
+    localparam integer X_BITS = FRACTION + 3;
+    localparam integer Y_BITS = FRACTION + 2;
     localparam integer VALUE_BITS = FRACTION + 2;
     localparam integer MARGIN_BITS = FRACTION - 7;
     localparam integer STAGES = 10 + TAXELS; // from a taxel's address to its tension being added to the sums
@@ -77,8 +77,8 @@ module sptfra_grid_search #(
     localparam [1:0] LAST_IMAGE = 2'd0 - STEP;
     localparam [3:0] LAST_ROW = SIDE[3:0] - 4'd1;
 
-    if (((SIDE != 11) && (SIDE != 13)) || (FRACTION < 20) || (FRACTION > 24)) begin : gen_check_points
-        sptfra_error_a_side_has_11_or_13_points_and_a_value_20_to_24_bits_of_fraction invalid ();
+    if ((FRACTION < 20) || (FRACTION > 24)) begin : gen_check_fraction
+        sptfra_error_a_value_has_20_to_24_bits_of_fraction invalid ();
     end
     if ((TAXELS != 1) && ((TAXELS != 2) || (IS_SERIAL != 0))) begin : gen_check_taxels
         sptfra_error_one_taxel_a_cycle_or_two_with_all_points invalid ();
@@ -161,8 +161,8 @@ module sptfra_grid_search #(
     end
 
     // ---- Their terms in each column and row of the grid
-    wire [TAXELS*SIDE*TERM_BITS-1:0] along_x_9;
-    wire [TAXELS*AT_ONCE*TERM_BITS-1:0] along_y_9;
+    wire [TAXELS*SIDE*X_BITS-1:0] along_x_9;
+    wire [TAXELS*AT_ONCE*Y_BITS-1:0] along_y_9;
     wire [TAXELS*MARGIN_BITS-1:0] margins; // of the level set
     wire [TAXELS-1:0] clips;
     reg [3:0] pass_8; // of the terms that are formed
@@ -209,8 +209,8 @@ module sptfra_grid_search #(
             .u1         (taxels_3[27*(3*taxel + 1) +: 27]),
             .u2         (taxels_3[27*(3*taxel + 2) +: 27]),
             .row        (pass_8),
-            .along_x    (along_x_9[SIDE*TERM_BITS*taxel +: SIDE*TERM_BITS]),
-            .along_y    (along_y_9[AT_ONCE*TERM_BITS*taxel +: AT_ONCE*TERM_BITS]),
+            .along_x    (along_x_9[SIDE*X_BITS*taxel +: SIDE*X_BITS]),
+            .along_y    (along_y_9[AT_ONCE*Y_BITS*taxel +: AT_ONCE*Y_BITS]),
             .clipped    (clips[taxel])
         );
     end
@@ -233,17 +233,17 @@ module sptfra_grid_search #(
         for (column = 0; column < SIDE; column = column + 1) begin : gen_points
             // Row 0 follows on the last one
             localparam integer ABOVE = ((index == AT_ONCE - 1) ? 0 : SIDE*(index + 1)) + column;
-            wire [TAXELS*TERM_BITS-1:0] x;
-            wire [TAXELS*TERM_BITS-1:0] y;
+            wire [TAXELS*X_BITS-1:0] x;
+            wire [TAXELS*Y_BITS-1:0] y;
 
             for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_terms
-                assign x[TERM_BITS*taxel +: TERM_BITS] = along_x_9[TERM_BITS*(SIDE*taxel + column) +: TERM_BITS];
-                assign y[TERM_BITS*taxel +: TERM_BITS] = along_y_9[TERM_BITS*(AT_ONCE*taxel + index) +: TERM_BITS];
+                assign x[X_BITS*taxel +: X_BITS] = along_x_9[X_BITS*(SIDE*taxel + column) +: X_BITS];
+                assign y[Y_BITS*taxel +: Y_BITS] = along_y_9[Y_BITS*(AT_ONCE*taxel + index) +: Y_BITS];
             end
 
             sptfra_grid_point #(
                 .TAXELS     (TAXELS),
-                .TERM_BITS  (TERM_BITS),
+                .X_BITS     (X_BITS),
                 .VALUE_BITS (VALUE_BITS)
             ) point (
                 .clock   (clock),
@@ -292,17 +292,11 @@ module sptfra_grid_search #(
         end
     end
 
-    wire [SIDE*VALUE_BITS-1:0] row_0;
-    wire [SIDE*VALUE_BITS-1:0] row_next;
+    wire [SIDE*(VALUE_BITS+1)-1:0] row_0 = sums[SIDE*(VALUE_BITS+1)-1:0];
+    wire [SIDE*(VALUE_BITS+1)-1:0] row_next;
 
-    for (column = 0; column < SIDE; column = column + 1) begin : gen_values
-        wire [VALUE_BITS:0] of_column = sums[(VALUE_BITS+1)*column +: VALUE_BITS+1];
-
-        assign row_0[VALUE_BITS*column +: VALUE_BITS] = of_column[VALUE_BITS-1:0]
-            | {VALUE_BITS{of_column[VALUE_BITS]}};
-    end
     if (IS_SERIAL != 0) begin : gen_memory
-        (* ram_style = "distributed" *) reg [SIDE*VALUE_BITS-1:0] memory [0:15];
+        (* ram_style = "distributed" *) reg [SIDE*(VALUE_BITS+1)-1:0] memory [0:15];
 
         always @(posedge clock) begin
             if (giving) begin
@@ -315,9 +309,16 @@ module sptfra_grid_search #(
         assign row_next = row_0;
     end
 
-    always @(posedge clock) begin
-        if (turn) begin
-            row_values <= row_next;
+    for (column = 0; column < SIDE; column = column + 1) begin : gen_values
+        wire [VALUE_BITS:0] of_column = row_next[(VALUE_BITS+1)*column +: VALUE_BITS+1];
+
+        always @(posedge clock) begin
+            if (turn) begin
+                row_values[VALUE_BITS*column +: VALUE_BITS] <= of_column[VALUE_BITS-1:0];
+                if (of_column[VALUE_BITS]) begin
+                    row_values[VALUE_BITS*column +: VALUE_BITS] <= {VALUE_BITS{1'b1}};
+                end
+            end
         end
     end
 

@@ -12,7 +12,7 @@
 `default_nettype none
 
 module sptfra_grid_terms #(
-    // Points along an axis, 11 or 13: with more a term would be wider
+    // Points along an axis
     parameter integer SIDE = 13,
     // Rows of the grid whose Y is wanted: SIDE, or 1
     parameter integer AT_ONCE = SIDE,
@@ -20,8 +20,9 @@ module sptfra_grid_terms #(
     parameter integer FRACTION = 21,
     // Left shift of u before the right shift by the bits of sum |b|: to one bit finer than X
     parameter integer U_LEFT = 22,
-    // Derived: bits of a term, and of the margin
-    parameter integer TERM_BITS = FRACTION + 4,
+    // Derived: bits of X, which is below 4 powers, of Y, which is below 2, and of the margin
+    parameter integer X_BITS = FRACTION + 3,
+    parameter integer Y_BITS = FRACTION + 2,
     parameter integer MARGIN_BITS = FRACTION - 7
 ) (
     input  wire clock,
@@ -39,8 +40,8 @@ module sptfra_grid_terms #(
     // The row that is wanted of one, five cycles after u
     input  wire [3:0] row,
     // Its terms, the least mu in the lowest bits
-    output wire [SIDE*TERM_BITS-1:0] along_x,
-    output wire [AT_ONCE*TERM_BITS-1:0] along_y,
+    output wire [SIDE*X_BITS-1:0] along_x,
+    output wire [AT_ONCE*Y_BITS-1:0] along_y,
     output reg  clipped // a u of the frame was
 );
 
@@ -52,14 +53,15 @@ module sptfra_grid_terms #(
     localparam integer STEP_SHIFT = 2; // a step of mu is 2^-STEP_SHIFT
     localparam integer MULTIPLES = 7; // of a step: 0 to 6
     localparam integer MULTIPLE_BITS = U_BITS + 3;
-    localparam integer WIDE_BITS = TERM_BITS + STEP_SHIFT; // before the fraction is dropped
+    localparam integer WIDE_X = X_BITS + STEP_SHIFT; // before the fraction is dropped
+    localparam integer WIDE_Y = Y_BITS + STEP_SHIFT;
 
     // ---- Scale of the frame: the bits of sum |b|, there three cycles after start
     wire [5:0] sum_bits;
     reg [5:0] scale; // the same, from the fourth cycle on
-    reg [39+FRACTION-SHARE_SHIFT:0] sum_octets;
+    reg [39+FRACTION-SHARE_SHIFT:0] sum_fours; // a shift by fours, then by 0 to 3: each bit is one of four in each LUT
     reg [39+FRACTION-SHARE_SHIFT:0] sum_shifted;
-    reg [26+FRACTION-SHARE_SHIFT:0] largest_octets;
+    reg [26+FRACTION-SHARE_SHIFT:0] largest_fours;
     reg [26+FRACTION-SHARE_SHIFT:0] largest_shifted;
     wire [FRACTION-SHARE_SHIFT-1:0] dead_zone = largest_shifted[FRACTION-SHARE_SHIFT-1:0];
 
@@ -73,10 +75,10 @@ module sptfra_grid_terms #(
 
     always @(posedge clock) begin
         scale <= sum_bits;
-        sum_octets <= {stress_sum, {(FRACTION - SHARE_SHIFT){1'b0}}} >> {scale[5:3], 3'd0};
-        sum_shifted <= sum_octets >> scale[2:0];
-        largest_octets <= {largest, {(FRACTION - SHARE_SHIFT){1'b0}}} >> {scale[5:3], 3'd0};
-        largest_shifted <= largest_octets >> scale[2:0];
+        sum_fours <= {stress_sum, {(FRACTION - SHARE_SHIFT){1'b0}}} >> {scale[5:2], 2'd0};
+        sum_shifted <= sum_fours >> scale[1:0];
+        largest_fours <= {largest, {(FRACTION - SHARE_SHIFT){1'b0}}} >> {scale[5:2], 2'd0};
+        largest_shifted <= largest_fours >> scale[1:0];
     end
 
     // One more, so that the least value is below the level in any case
@@ -92,8 +94,8 @@ module sptfra_grid_terms #(
 
     for (index = 0; index < 3; index = index + 1) begin : gen_u
         wire signed [WIDE-1:0] wide = { {(WIDE - 27){given[27*index + 26]}}, given[27*index +: 27]} << U_LEFT;
-        reg signed [WIDE-1:0] octets_1;
-        wire signed [WIDE-1:0] bits_1 = octets_1 >>> scale[2:0];
+        reg signed [WIDE-1:0] fours_1;
+        wire signed [WIDE-1:0] bits_1 = fours_1 >>> scale[1:0];
         reg signed [TWICE_BITS-1:0] twice_2;
         reg sign_2;
         reg is_whole_2; // twice_2 has all of it
@@ -103,12 +105,12 @@ module sptfra_grid_terms #(
             && (rounded_2[TWICE_BITS-1:U_BITS-1] == {(TWICE_BITS - U_BITS + 1){rounded_2[TWICE_BITS-1]}});
 
         always @(posedge clock) begin
-            octets_1 <= wide >>> {scale[5:3], 3'd0};
+            fours_1 <= wide >>> {scale[5:2], 2'd0};
             twice_2 <= bits_1[TWICE_BITS-1:0];
-            sign_2 <= octets_1[WIDE-1];
-            // Of the bits above, those that a shift of up to 7 brings down, and the others
-            is_whole_2 <= (bits_1[TWICE_BITS+6:TWICE_BITS-1] == {8{octets_1[WIDE-1]}})
-                && (octets_1[WIDE-1:TWICE_BITS+7] == {(WIDE - TWICE_BITS - 7){octets_1[WIDE-1]}});
+            sign_2 <= fours_1[WIDE-1];
+            // Of the bits above, those that a shift of up to 3 brings down, and the others
+            is_whole_2 <= (bits_1[TWICE_BITS+2:TWICE_BITS-1] == {4{fours_1[WIDE-1]}})
+                && (fours_1[WIDE-1:TWICE_BITS+3] == {(WIDE - TWICE_BITS - 3){fours_1[WIDE-1]}});
             normal_3 <= fits_2 ? rounded_2[U_BITS-1:0] : {sign_2, {(U_BITS - 1){!sign_2}}};
         end
 
@@ -165,16 +167,15 @@ module sptfra_grid_terms #(
     for (index = 0; index < SIDE; index = index + 1) begin : gen_along_x
         localparam integer STEPS = (index < REACH) ? REACH - index : index - REACH;
         wire signed [MULTIPLE_BITS-1:0] times = multiples_5[MULTIPLE_BITS*STEPS +: MULTIPLE_BITS];
-        wire signed [WIDE_BITS-1:0] base = { {(TERM_BITS - U_BITS - 1){base_5[U_BITS]}}, base_5,
-            {STEP_SHIFT{1'b0}}};
-        wire signed [WIDE_BITS-1:0] wide = { {(WIDE_BITS - MULTIPLE_BITS){times[MULTIPLE_BITS-1]}}, times};
-        reg signed [WIDE_BITS-1:0] x_6;
+        wire signed [WIDE_X-1:0] base = { {(X_BITS - U_BITS - 1){base_5[U_BITS]}}, base_5, {STEP_SHIFT{1'b0}}};
+        wire signed [WIDE_X-1:0] wide = { {(WIDE_X - MULTIPLE_BITS){times[MULTIPLE_BITS-1]}}, times};
+        reg signed [WIDE_X-1:0] x_6;
 
         always @(posedge clock) begin
             x_6 <= (index < REACH) ? base - wide : base + wide;
         end
 
-        assign along_x[TERM_BITS*index +: TERM_BITS] = x_6[WIDE_BITS-1:STEP_SHIFT];
+        assign along_x[X_BITS*index +: X_BITS] = x_6[WIDE_X-1:STEP_SHIFT];
 
         wire _unused_x = &{1'b0, x_6[STEP_SHIFT-1:0]};
     end
@@ -182,8 +183,7 @@ module sptfra_grid_terms #(
         localparam integer STEPS = (index < REACH) ? REACH - index : index - REACH;
         wire is_negative;
         wire signed [MULTIPLE_BITS-1:0] times;
-        wire signed [WIDE_BITS-1:0] wide = { {(WIDE_BITS - MULTIPLE_BITS){times[MULTIPLE_BITS-1]}}, times};
-        reg signed [WIDE_BITS-1:0] y_6;
+        reg signed [WIDE_Y-1:0] y_6;
 
         if (AT_ONCE == 1) begin : gen_one
             wire [MULTIPLES*MULTIPLE_BITS-1:0] of_u2
@@ -200,10 +200,10 @@ module sptfra_grid_terms #(
         end
 
         always @(posedge clock) begin
-            y_6 <= is_negative ? -wide : wide;
+            y_6 <= is_negative ? -times : times;
         end
 
-        assign along_y[TERM_BITS*index +: TERM_BITS] = y_6[WIDE_BITS-1:STEP_SHIFT];
+        assign along_y[Y_BITS*index +: Y_BITS] = y_6[WIDE_Y-1:STEP_SHIFT];
 
         wire _unused_y = &{1'b0, y_6[STEP_SHIFT-1:0]};
     end

@@ -31,44 +31,48 @@ module sptfra_taxel_memory #(
     output wire [3*4*27-1:0] read_values
 );
 
-    // ---- A register on the way to the memory
+    // ---- A register on the way to the memory. An orbit's images beyond its own are 0
     reg [2:0] valid;
     reg bank;
     reg [ROW_WIDTH-1:0] orbit;
-    reg [4*DATA_BITS-1:0] values;
+    wire [3:0] counts;
+    wire [4*27-1:0] wide;
 
     always @(posedge clock) begin
         valid <= u_valid;
         bank <= fill_bank;
         orbit <= u_orbit;
-        values <= u_values;
         if (reset) begin
             valid <= 3'd0;
             bank <= 1'b0;
         end
     end
 
-    // ---- Memory, one for each q
-    wire [3:0] counts;
-    wire [4*27-1:0] wide;
-
     sptfra_orbit_images #(
         .COLUMNS   (COLUMNS),
         .ROWS      (ROWS),
         .ROW_WIDTH (ROW_WIDTH)
     ) images (
-        .orbit  (orbit),
+        .orbit  (u_orbit),
         .counts (counts)
     );
 
     genvar index;
 
     for (index = 0; index < 4; index = index + 1) begin : gen_images
-        wire signed [DATA_BITS-1:0] value = values[DATA_BITS*index +: DATA_BITS];
+        reg signed [DATA_BITS-1:0] value;
 
-        assign wide[27*index +: 27] = counts[index]
-            ? { {(28 - DATA_BITS){value[DATA_BITS-1]}}, value[DATA_BITS-2:0]} : 27'd0;
+        always @(posedge clock) begin
+            value <= u_values[DATA_BITS*index +: DATA_BITS];
+            if (!counts[index]) begin
+                value <= {DATA_BITS{1'b0}};
+            end
+        end
+
+        assign wide[27*index +: 27] = { {(28 - DATA_BITS){value[DATA_BITS-1]}}, value[DATA_BITS-2:0]};
     end
+
+    // ---- Memory, one for each q
     for (index = 0; index < 3; index = index + 1) begin : gen_memories
         sptfra_ram #(
             .WIDTH         (4 * 27),

@@ -240,7 +240,8 @@ module sptfra_frame_writer #(
     assign frame_saturated = seen_saturated || (takes && (saturated != {SAMPLES{1'b0}}));
     assign frame_not_finite = seen_not_finite || (takes && (not_finite != {SAMPLES{1'b0}}));
     assign frame_bad_length = ends ? bad_length_now : bad_length;
-    assign frame_replaced = replaced_before + ((stress_valid && word[WORD_BITS-1]) ? {3'd0, magnitude} : 30'd0);
+    assign frame_replaced = replaced_before
+        + (((REPLACEABLE != 0) && stress_valid && word[WORD_BITS-1]) ? {3'd0, magnitude} : 30'd0);
 
     always @(posedge clock) begin
         seen_saturated <= frame_saturated;

@@ -167,13 +167,13 @@ module sptfra_summary #(
         .bits  (found_z)
     );
 
-    // Up to the 64th bit by left shifts, whole bytes first, then down to the width wanted
-    reg [6:0] left_xy, left_z;
-    reg signed [63:0] bytes_x, bytes_y;
-    reg [63:0] bytes_z;
-    wire signed [63:0] shifted_x = bytes_x <<< left_xy[2:0];
-    wire signed [63:0] shifted_y = bytes_y <<< left_xy[2:0];
-    wire [63:0] shifted_z = bytes_z << left_z[2:0];
+    // Up to the 64th bit by left shifts, fours first, then down to the width wanted
+    reg [5:0] left_xy, left_z;
+    reg signed [63:0] fours_x, fours_y;
+    reg [63:0] fours_z;
+    wire signed [63:0] shifted_x = fours_x <<< left_xy[1:0];
+    wire signed [63:0] shifted_y = fours_y <<< left_xy[1:0];
+    wire [63:0] shifted_z = fours_z << left_z[1:0];
 
     // Step by step behind the forces, which hold
     always @(posedge clock) begin
@@ -181,11 +181,11 @@ module sptfra_summary #(
         magnitude_z <= force_z[63] ? -force_z : force_z;
         bits_xy <= found_xy;
         bits_z <= found_z;
-        left_xy <= 7'd63 - found_xy;
-        left_z <= 7'd64 - found_z;
-        bytes_x <= force_x <<< {left_xy[6:3], 3'd0};
-        bytes_y <= force_y <<< {left_xy[6:3], 3'd0};
-        bytes_z <= magnitude_z << {left_z[6:3], 3'd0};
+        left_xy <= 6'd63 - found_xy[5:0];
+        left_z <= 6'd0 - found_z[5:0];
+        fours_x <= force_x <<< {left_xy[5:2], 2'd0};
+        fours_y <= force_y <<< {left_xy[5:2], 2'd0};
+        fours_z <= magnitude_z << {left_z[5:2], 2'd0};
         unit_x <= {shifted_x[63], shifted_x[63:33]};
         unit_y <= {shifted_y[63], shifted_y[63:33]};
         unit_z <= shifted_z[63:32];
@@ -216,7 +216,8 @@ module sptfra_summary #(
     sptfra_ratio #(
         .WIDTH        (38),
         .INTEGER_BITS (7),
-        .BITS         (33)
+        .BITS         (33),
+        .QUOTIENTS    (1)
     ) ratio (
         .clock       (clock),
         .reset       (reset),

@@ -82,34 +82,27 @@ module sptfra_cean #(
         end
     end
 
-    // ---- The taxels at the grid's border, beside stage 2
-    wire [39:0] edge_sum;
+    // ---- Place of the taxel in stage 1, and the sum of those at the grid's border
+    localparam integer LAST_X = COLUMNS - 1;
+    localparam integer LAST_Y = ROWS - 1;
+    reg [5:0] x;
+    reg [5:0] y;
+    reg [39:0] at_edge;
+    wire row_ends = (x == LAST_X[5:0]);
+    wire is_edge = row_ends || (x == 6'd0) || (y == 6'd0) || (y == LAST_Y[5:0]);
+    wire [39:0] edge_sum = (WITH_ERROR != 0) ? at_edge : 40'd0;
 
-    if (WITH_ERROR != 0) begin : gen_border
-        localparam integer LAST_X = COLUMNS - 1;
-        localparam integer LAST_Y = ROWS - 1;
-        reg [5:0] x;
-        reg [5:0] y;
-        reg [39:0] at_edge;
-        wire row_ends = (x == LAST_X[5:0]);
-        wire is_edge = row_ends || (x == 6'd0) || (y == 6'd0) || (y == LAST_Y[5:0]);
-
-        assign edge_sum = at_edge;
-
-        always @(posedge clock) begin
-            if (valid_1) begin
-                x <= row_ends ? 6'd0 : x + 6'd1;
-                y <= row_ends ? y + 6'd1 : y;
-                at_edge <= at_edge + (is_edge ? {13'd0, magnitude_1} : 40'd0);
-            end
-            if (clear) begin
-                x <= 6'd0;
-                y <= 6'd0;
-                at_edge <= 40'd0;
-            end
+    always @(posedge clock) begin
+        if (valid_1) begin
+            x <= row_ends ? 6'd0 : x + 6'd1;
+            y <= row_ends ? y + 6'd1 : y;
+            at_edge <= at_edge + (is_edge ? {13'd0, magnitude_1} : 40'd0);
         end
-    end else begin : gen_no_border
-        assign edge_sum = 40'd0;
+        if (clear) begin
+            x <= 6'd0;
+            y <= 6'd0;
+            at_edge <= 40'd0;
+        end
     end
 
     // ---- Centroids and direction
@@ -168,6 +161,8 @@ module sptfra_cean #(
             .clear     (clear),
             .noise     (noise),
             .valid     (valid_1),
+            .x         (x),
+            .y         (y),
             .tensile   (tensile_1),
             .magnitude (magnitude_1),
             .start     (idle && frame_done),
@@ -189,7 +184,7 @@ module sptfra_cean #(
         assign push_y = 27'sd0;
         assign no_push = 1'b1;
 
-        wire _unused = &{1'b0, tensile_1, COLUMNS != 0, ROWS != 0, PITCH_X, PITCH_Y};
+        wire _unused = &{1'b0, tensile_1, PITCH_X, PITCH_Y};
     end
 
     // ---- Two buffers for finished frames: never full, since Bz asks first

@@ -60,6 +60,8 @@ module sptfra_spmv_array #(
     parameter AHEAD = 0,
     parameter DESTINATION_BITS = 4,
     parameter [95:0] SHIFTS = {16{6'd16}},
+    parameter LEAST_SHIFT = 16,
+    parameter LARGEST_SHIFT = 16,
     // Prefix of the ROM file names, for instance a directory with its slash, and what they begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
@@ -262,8 +264,9 @@ module sptfra_spmv_array #(
         end
     end
 
-    // ---- PEs
-    wire [48*CHANNELS*PES-1:0] results;
+    // ---- PEs. Of a sum they keep the bits of any result, and one below to round it
+    localparam RESULT_BITS = ((LARGEST_SHIFT + DATA_BITS < 48) ? LARGEST_SHIFT + DATA_BITS : 48) - LEAST_SHIFT + 1;
+    wire [RESULT_BITS*CHANNELS*PES-1:0] results;
     wire [48*CHANNELS*PES-1:0] carries;
     wire [PES-1:0] pending;
     wire [PES-1:0] take;
@@ -284,6 +287,8 @@ module sptfra_spmv_array #(
             .OPERAND_DEPTH    (OPERAND_DEPTH),
             .MIRROR_SIDE      (MIRROR_SIDE),
             .FRICTION         (FRICTIONS != {PRODUCTS{1'b0}}),
+            .LEAST_SHIFT      (LEAST_SHIFT),
+            .RESULT_BITS      (RESULT_BITS),
             .ROM_DIR          (ROM_DIR),
             .VALUES_FILE      ((ROM_NAME == "") ? "" : {ROM_NAME, "_values_pe", NUMBER, ".mem"}),
             .COLUMNS_FILE     ((ROM_NAME == "") ? "" : {ROM_NAME, "_columns_pe", NUMBER, ".mem"}),
@@ -308,7 +313,7 @@ module sptfra_spmv_array #(
             .write_data      (data),
             .next_carry      (carries[48*CHANNELS*NEXT +: 48*CHANNELS]),
             .carry           (carries[48*CHANNELS*index +: 48*CHANNELS]),
-            .result          (results[48*CHANNELS*index +: 48*CHANNELS]),
+            .result          (results[RESULT_BITS*CHANNELS*index +: RESULT_BITS*CHANNELS]),
             .pending         (pending[index]),
             .take            (take[index])
         );
@@ -323,6 +328,9 @@ module sptfra_spmv_array #(
         .AHEAD            (AHEAD),
         .DESTINATION_BITS (DESTINATION_BITS),
         .SHIFTS           (SHIFTS),
+        .LEAST_SHIFT      (LEAST_SHIFT),
+        .LARGEST_SHIFT    (LARGEST_SHIFT),
+        .RESULT_BITS      (RESULT_BITS),
         .SLOT_DEPTH       (SLOT_DEPTH),
         .ROM_DIR          (ROM_DIR),
         .SLOTS_FILE       ((ROM_NAME == "") ? "" : {ROM_NAME, "_slots.mem"})

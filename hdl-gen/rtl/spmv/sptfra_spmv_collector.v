@@ -3,7 +3,7 @@
 //
 // Collector of the PEs' results: takes one in each write-back slot, rounds it and puts it on the result bus.
 //
-// Take to bus: 3 cycles. Rounding: add half a step, drop the bits below. The order in which results become ready is
+// Take to bus: 3 cycles. Rounding: to the nearest step, ties upwards. The order in which results become ready is
 // fixed. So a ROM holds a word for each slot: {last of its program, PE, destination, row}.
 //
 // | destination | 4 channels: components       | 1 channel: taxels                    |
@@ -33,8 +33,12 @@ module sptfra_spmv_collector #(
     parameter MIRROR = 0,
     // Bits of a destination in the ROM
     parameter DESTINATION_BITS = 4,
-    // Bits dropped of a result by destination, 6 each, destination 0 lowest
+    // Bits dropped of a sum by destination, 6 each, destination 0 lowest; the least and the largest of them
     parameter [95:0] SHIFTS = {16{6'd16}},
+    parameter LEAST_SHIFT = 16,
+    parameter LARGEST_SHIFT = 16,
+    // Bits of a PE's result. The lowest one is half of 2^LEAST_SHIFT steps of the sum
+    parameter RESULT_BITS = 28,
     // 1: while a program's last slot waits, the ROM's address is that of the next program's first one, if that has
     // begun: two cycles from one slot to the other. 0: four
     parameter AHEAD = 0,
@@ -52,7 +56,7 @@ module sptfra_spmv_collector #(
     input  wire restart, // one or two cycles before the first issue of a program
     input  wire [SLOT_WIDTH-1:0] start_slot, // its first write-back slot
     // From the PEs
-    input  wire [48*CHANNELS*PES-1:0] results,
+    input  wire [RESULT_BITS*CHANNELS*PES-1:0] results,
     input  wire [PES-1:0] pending,
     output wire [PES-1:0] take,
     // Result bus
@@ -70,26 +74,13 @@ module sptfra_spmv_collector #(
         sptfra_error_only_four_channels_are_mirrored invalid ();
     end
 
-    // The least or the largest of SHIFTS
-    function integer extreme(input integer largest);
-        integer place;
-        begin
-            extreme = {26'd0, SHIFTS[5:0]};
-            for (place = 1; place < 16; place = place + 1) begin
-                if ((largest != 0) == ({26'd0, SHIFTS[6*place +: 6]} > extreme)) begin
-                    extreme = {26'd0, SHIFTS[6*place +: 6]};
-                end
-            end
-        end
-    endfunction
-
     localparam TAKE_TO_BUS = 3; // cycles, which simulations check
     localparam PE_WIDTH = (PES > 2) ? $clog2(PES) : 1;
     localparam WORD_WIDTH = 1 + PE_WIDTH + DESTINATION_BITS + ROW_WIDTH;
-    // Of all shifts the least, and as many more as any of them has
-    localparam integer LEAST_SHIFT = extreme(0);
-    localparam integer MORE_BITS = (extreme(1) > LEAST_SHIFT) ? $clog2(extreme(1) - LEAST_SHIFT + 1) : 1;
-    localparam integer SPREAD_BITS = DATA_BITS + (1 << MORE_BITS) - 1; // of a result before the rest of its shift
+    localparam [5:0] LEAST = LEAST_SHIFT;
+    // What a shift is more than the least one
+    localparam MORE_BITS = (LARGEST_SHIFT > LEAST_SHIFT) ? $clog2(LARGEST_SHIFT - LEAST_SHIFT + 1) : 1;
+    localparam SPREAD_BITS = DATA_BITS + (1 << MORE_BITS); // of a result before that shift
     localparam [3:0] Y = 4'd0, U1 = 4'd2, U2 = 4'd3, R1 = 4'd6, R2 = 4'd7, FORCE_X = 4'd9, FORCE_Y = 4'd10;
 
     // ---- The next slot, one word ahead of the ROM; after a program's last one, on to the program that has begun
@@ -183,15 +174,15 @@ module sptfra_spmv_collector #(
 `endif
 
     // ---- Result that was taken
-    wire [48*CHANNELS-1:0] result_of [0:PES-1];
-    reg [48*CHANNELS-1:0] taken;
+    wire [RESULT_BITS*CHANNELS-1:0] result_of [0:PES-1];
+    reg [RESULT_BITS*CHANNELS-1:0] taken;
     reg taken_valid;
     reg [DESTINATION_BITS-1:0] taken_destination;
     reg [5:0] taken_shift;
     reg [ROW_WIDTH-1:0] taken_row;
 
     for (index = 0; index < PES; index = index + 1) begin : gen_results
-        assign result_of[index] = results[48*CHANNELS*index +: 48*CHANNELS];
+        assign result_of[index] = results[RESULT_BITS*CHANNELS*index +: RESULT_BITS*CHANNELS];
     end
 
     assign take = select & pending & {PES{may_take}};
@@ -207,51 +198,62 @@ module sptfra_spmv_collector #(
         end
     end
 
-    // ---- Round: half a step of the result, then the shift, both by destination. What all shifts have in common is
-    // wires, and the bits below are left out on the way here. The format of each result was chosen so that its worst
-    // case fits: the bits above are copies of the sign
-    wire [5:0] taken_more = taken_shift - LEAST_SHIFT[5:0];
-    wire [47:0] half = ((48'd1 << taken_more[MORE_BITS-1:0]) << LEAST_SHIFT) >> 1;
-    reg [MORE_BITS-1:0] sum_more;
-    reg sum_valid;
-    reg [DESTINATION_BITS-1:0] sum_destination;
-    reg [ROW_WIDTH-1:0] sum_row;
-    wire [CHANNELS*DATA_BITS-1:0] rounded;
-    wire _unused_more = &{1'b0, taken_more};
+    // ---- Shift by destination, down to half a step of the result. The format of each result was chosen so that its
+    // worst case fits: the bits above are copies of the sign
+    wire [5:0] taken_more = taken_shift - LEAST;
+    wire [15:0] taken_is = 16'd1 << taken_destination; // bit k: of destination k
+    reg shifted_valid;
+    reg [DESTINATION_BITS-1:0] shifted_destination;
+    reg odd_x; // of a result that is odd in x
+    reg odd_y;
+    reg [ROW_WIDTH-1:0] shifted_row;
+    reg [CHANNELS*(DATA_BITS+1)-1:0] shifted;
+    wire _unused_taken = &{1'b0, taken_more, taken_is};
 
     for (index = 0; index < CHANNELS; index = index + 1) begin : gen_channels
-        reg [47:0] sum;
-        wire [111+DATA_BITS:0] wide = { {(64 + DATA_BITS){sum[47]}}, sum};
-        wire [SPREAD_BITS-1:0] spread = wide[LEAST_SHIFT +: SPREAD_BITS] >> sum_more;
+        wire [RESULT_BITS-1:0] of_channel = taken[RESULT_BITS*index +: RESULT_BITS];
+        wire [RESULT_BITS+SPREAD_BITS-1:0] wide = { {SPREAD_BITS{of_channel[RESULT_BITS-1]}}, of_channel};
+        wire [SPREAD_BITS-1:0] spread = wide[SPREAD_BITS-1:0] >> taken_more[MORE_BITS-1:0];
 
         always @(posedge clock) begin
-            sum <= taken[48*index +: 48] + half;
+            shifted[(DATA_BITS+1)*index +: DATA_BITS+1] <= spread[DATA_BITS:0];
         end
 
-        assign rounded[DATA_BITS*index +: DATA_BITS] = spread[DATA_BITS-1:0];
         wire _unused = &{1'b0, wide, spread};
     end
 
-    // ---- Bus: the components from the channels that computed them
-    wire odd_x = (sum_destination == U1[DESTINATION_BITS-1:0]) || ((DESTINATION_BITS == 4)
-        && ((sum_destination == R1[DESTINATION_BITS-1:0]) || (sum_destination == FORCE_X[DESTINATION_BITS-1:0])));
-    wire odd_y = (sum_destination == U2[DESTINATION_BITS-1:0]) || ((DESTINATION_BITS == 4)
-        && ((sum_destination == R2[DESTINATION_BITS-1:0]) || (sum_destination == FORCE_Y[DESTINATION_BITS-1:0])));
+    always @(posedge clock) begin
+        shifted_valid <= taken_valid;
+        shifted_destination <= taken_destination;
+        shifted_row <= taken_row;
+        odd_x <= taken_is[U1] || taken_is[R1] || taken_is[FORCE_X];
+        odd_y <= taken_is[U2] || taken_is[R2] || taken_is[FORCE_Y];
+        if (reset) begin
+            shifted_valid <= 1'b0;
+        end
+    end
+
+    // ---- Bus: the components from the channels that computed them, rounded
+    reg [CHANNELS*(DATA_BITS+1)-1:0] ordered;
     reg [15:0] route; // bit k: of destination k
     reg [2:1] lasts;
 
     always @(posedge clock) begin
-        sum_valid <= taken_valid;
-        sum_destination <= taken_destination;
-        sum_more <= taken_more[MORE_BITS-1:0];
-        sum_row <= taken_row;
-        route <= (16'd1 << sum_destination) & {16{sum_valid}};
-        result_row <= sum_row;
+        route <= (16'd1 << shifted_destination) & {16{shifted_valid}};
+        result_row <= shifted_row;
         {result_last, lasts} <= {lasts, ends};
         if (reset) begin
-            sum_valid <= 1'b0;
             route <= 16'd0;
             {result_last, lasts} <= 3'd0;
+        end
+    end
+
+    for (index = 0; index < CHANNELS; index = index + 1) begin : gen_rounded
+        wire [DATA_BITS:0] of_channel = ordered[(DATA_BITS+1)*index +: DATA_BITS+1];
+
+        always @(posedge clock) begin
+            result_value[DATA_BITS*index +: DATA_BITS] <= of_channel[DATA_BITS:1]
+                + { {(DATA_BITS - 1){1'b0}}, of_channel[0]};
         end
     end
 
@@ -271,20 +273,20 @@ module sptfra_spmv_collector #(
         assign result_g = {8'd0, route[4]};
         wire _unused = &{1'b0, route[15:12]};
 
-        wire [DATA_BITS-1:0] channel_0 = rounded[DATA_BITS*0 +: DATA_BITS];
-        wire [DATA_BITS-1:0] channel_1 = rounded[DATA_BITS*1 +: DATA_BITS];
-        wire [DATA_BITS-1:0] channel_2 = rounded[DATA_BITS*2 +: DATA_BITS];
-        wire [DATA_BITS-1:0] channel_3 = rounded[DATA_BITS*3 +: DATA_BITS];
+        wire [DATA_BITS:0] channel_0 = shifted[(DATA_BITS+1)*0 +: DATA_BITS+1];
+        wire [DATA_BITS:0] channel_1 = shifted[(DATA_BITS+1)*1 +: DATA_BITS+1];
+        wire [DATA_BITS:0] channel_2 = shifted[(DATA_BITS+1)*2 +: DATA_BITS+1];
+        wire [DATA_BITS:0] channel_3 = shifted[(DATA_BITS+1)*3 +: DATA_BITS+1];
 
-        always @(posedge clock) begin
+        always @(*) begin
             if (odd_x) begin
-                result_value <= {channel_2, channel_3, channel_0, channel_1};
+                ordered = {channel_2, channel_3, channel_0, channel_1};
             end else if (odd_y && (MIRROR != 0)) begin
-                result_value <= {channel_2, channel_0, channel_3, channel_1};
+                ordered = {channel_2, channel_0, channel_3, channel_1};
             end else if (odd_y) begin
-                result_value <= {channel_1, channel_0, channel_3, channel_2};
+                ordered = {channel_1, channel_0, channel_3, channel_2};
             end else begin
-                result_value <= rounded;
+                ordered = shifted;
             end
         end
     end else begin : gen_taxels
@@ -292,8 +294,8 @@ module sptfra_spmv_collector #(
         assign result_kept = {1'b0, route[6:4]};
         assign result_force = 3'd0;
 
-        always @(posedge clock) begin
-            result_value <= rounded;
+        always @(*) begin
+            ordered = shifted;
         end
         wire _unused = &{1'b0, odd_x, odd_y};
     end

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Multiply-accumulate lane of a PE, with the carry of a row that is cut in two and two buffers for finished sums.
+// Multiply-accumulate lane of a PE, with the carry of a row that is cut in two.
 //
 // Coefficients of up to 18 and operands of up to 27 bits take one multiplier. Wider ones take two, and sum products
 // over 2^17, rounded. There coefficients and friction components are left-aligned, so that short ones lose little or
-// nothing. Operands to accumulator: 3 cycles; accumulator to result: 1. Initiation interval: 1.
+// nothing. Operands to row sum: 3 cycles. Initiation interval: 1.
 
 `default_nettype none
 
@@ -28,13 +28,10 @@ module sptfra_spmv_lane #(
     input  wire signed [17:0] mu_y,
     // With the accumulated sum
     input  wire tail_ends, // it is the carry for the PE before
-    input  wire result_ends, // it is a result
-    input  wire is_head, // which the next PE's carry completes
-    input  wire no_other, // no result waits, or the only one is being taken
-    input  wire take,
+    input  wire is_head, // the next PE's carry completes it
     input  wire [47:0] next_carry,
     output reg  [47:0] carry,
-    output reg  [47:0] result
+    output wire [47:0] row_sum
 );
 
     if ((COEFFICIENT_BITS > 27) || (DATA_BITS > 35)) begin : gen_check_factors
@@ -97,21 +94,11 @@ module sptfra_spmv_lane #(
     );
 
     // ---- Sums
-    wire [47:0] row_sum = accumulator + (next_carry & {48{is_head}});
-    reg [47:0] second_result;
+    assign row_sum = accumulator + (next_carry & {48{is_head}});
 
     always @(posedge clock) begin
         if (tail_ends) begin
             carry <= accumulator;
-        end
-        if (take) begin
-            result <= second_result;
-        end
-        if (result_ends && no_other) begin
-            result <= row_sum;
-        end
-        if (result_ends) begin
-            second_result <= row_sum;
         end
     end
 

@@ -28,6 +28,9 @@ module sptfra_spmv_pe #(
     parameter MIRROR_SIDE = 0,
     // Whether friction components take the coefficients' place in some products
     parameter FRICTION = 1,
+    // Bits of a result. The lowest one is half of 2^LEAST_SHIFT steps of the sum
+    parameter LEAST_SHIFT = 0,
+    parameter RESULT_BITS = 49,
     // Prefix of the ROM file names
     parameter ROM_DIR = "",
     // Names of the ROM files: coefficients, columns, row segments
@@ -61,7 +64,7 @@ module sptfra_spmv_pe #(
     // Row sums
     input  wire [48*CHANNELS-1:0] next_carry, // of the next PE
     output wire [48*CHANNELS-1:0] carry,
-    output wire [48*CHANNELS-1:0] result,
+    output wire [RESULT_BITS*CHANNELS-1:0] result,
     output reg  pending, // result waits for the collector
     input  wire take
 );
@@ -246,13 +249,26 @@ module sptfra_spmv_pe #(
     end
 
     // ---- Multiply-accumulate, and two buffers for results
+    (* ram_style = "distributed" *) reg [RESULT_BITS*CHANNELS-1:0] buffers [0:1];
+    wire [RESULT_BITS*CHANNELS-1:0] row_sums;
+    reg write_buffer; // of the next result
+    reg read_buffer; // of the first result that waits
     reg [1:0] held; // results
     wire [1:0] kept = held - {1'b0, take};
 
+    assign result = buffers[read_buffer];
+
     always @(posedge clock) begin
+        if (result_ends[6]) begin
+            buffers[write_buffer] <= row_sums;
+        end
+        write_buffer <= write_buffer ^ result_ends[6];
+        read_buffer <= read_buffer ^ take;
         held <= kept + {1'b0, result_ends[6]};
         pending <= (kept != 2'd0) || result_ends[6];
         if (reset) begin
+            write_buffer <= 1'b0;
+            read_buffer <= 1'b0;
             held <= 2'd0;
             pending <= 1'b0;
         end
@@ -272,6 +288,8 @@ module sptfra_spmv_pe #(
     for (channel = 0; channel < CHANNELS; channel = channel + 1) begin : gen_channels
         // With the diagonal mirror channels 1 and 2 change places
         localparam OTHER = (CHANNELS == 1) ? 0 : (channel == 1) ? 2 : (channel == 2) ? 1 : channel;
+        wire [47:0] row_sum;
+        wire [48:0] halves = {row_sum, 1'b0};
 
         sptfra_spmv_lane #(
             .COEFFICIENT_BITS (COEFFICIENT_BITS),
@@ -289,14 +307,15 @@ module sptfra_spmv_pe #(
             .mu_x        (mu_x),
             .mu_y        (mu_y),
             .tail_ends   (tail_ends[6]),
-            .result_ends (result_ends[6]),
             .is_head     (is_head[6]),
-            .no_other    (kept == 2'd0),
-            .take        (take),
             .next_carry  (next_carry[48*channel +: 48]),
             .carry       (carry[48*channel +: 48]),
-            .result      (result[48*channel +: 48])
+            .row_sum     (row_sum)
         );
+
+        assign row_sums[RESULT_BITS*channel +: RESULT_BITS] = halves[LEAST_SHIFT +: RESULT_BITS];
+
+        wire _unused_sum = &{1'b0, halves};
     end
 
     wire _unused = &{1'b0, segment_address, column_wide, element, swaps};

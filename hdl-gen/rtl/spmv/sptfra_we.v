@@ -47,97 +47,74 @@ module sptfra_we #(
     localparam signed [DATA_BITS-1:0] ZERO = 0;
 
     if (CHANNELS == 4) begin : gen_folded
-        // ---- Stage 1: part. Stages 2 and 3: fold
-        reg [3:1] valid;
+        // ---- Stage 1: |w|, and a cycle later y+. Stages 2 and 3: fold. The next result is two cycles behind, or more
+        reg [5:1] valid; // of |w|
         reg [ROW_WIDTH-1:0] orbit_1;
         reg [ROW_WIDTH-1:0] orbit_2;
         reg [ROW_WIDTH-1:0] orbit_3;
-        wire [4*DATA_BITS-1:0] press;
-        wire [4*DATA_BITS-1:0] pull;
-        wire [4*DATA_BITS+7:0] press_sums;
-        wire [4*DATA_BITS+7:0] pull_sums;
+        wire [4*DATA_BITS-1:0] parts;
+        wire [4*DATA_BITS+7:0] sums;
         genvar index;
 
         always @(posedge clock) begin
-            valid <= {valid[2:1], taxel_y};
+            valid <= {valid[4:1], taxel_y};
             {orbit_3, orbit_2, orbit_1} <= {orbit_2, orbit_1, taxel_row};
             if (reset) begin
-                valid <= 3'd0;
+                valid <= 5'd0;
             end
         end
 
         for (index = 0; index < 4; index = index + 1) begin : gen_images
             wire signed [DATA_BITS-1:0] y = taxels[DATA_BITS*index +: DATA_BITS];
-            reg signed [DATA_BITS-1:0] pressing;
-            reg signed [DATA_BITS-1:0] pulling;
+            reg signed [DATA_BITS-1:0] part;
+            reg signed [DATA_BITS-1:0] pull;
 
             always @(posedge clock) begin
-                pressing <= y[DATA_BITS-1] ? -y : ZERO;
-                pulling <= y[DATA_BITS-1] ? ZERO : y;
+                part <= pull;
+                if (taxel_y) begin
+                    part <= y[DATA_BITS-1] ? -y : ZERO;
+                    pull <= y[DATA_BITS-1] ? ZERO : y;
+                end
             end
 
-            assign press[DATA_BITS*index +: DATA_BITS] = pressing;
-            assign pull[DATA_BITS*index +: DATA_BITS] = pulling;
+            assign parts[DATA_BITS*index +: DATA_BITS] = part;
         end
 
         sptfra_butterfly #(
             .WIDTH (DATA_BITS)
-        ) fold_press (
+        ) fold (
             .clock  (clock),
             .enable (1'b1),
-            .values (press),
-            .sums   (press_sums)
-        );
-
-        sptfra_butterfly #(
-            .WIDTH (DATA_BITS)
-        ) fold_pull (
-            .clock  (clock),
-            .enable (1'b1),
-            .values (pull),
-            .sums   (pull_sums)
+            .values (parts),
+            .sums   (sums)
         );
 
         assign weights_valid = valid[1];
         assign weights_row = orbit_1;
-        assign weights = press;
+        assign weights = parts;
 
-        // ---- Stages 4 and 5: round, write one after the other. The next result is two cycles behind, or more
+        // ---- Stages 4 and 5: round, write one after the other
         localparam [DATA_BITS+1:0] HALF = (FOLD_SHIFT > 0) ? 1 << (FOLD_SHIFT - 1) : 0;
-        reg pull_waits;
-        reg pull_written;
-        reg [4*DATA_BITS-1:0] pull_held;
-        wire [4*DATA_BITS-1:0] press_rounded;
-        wire [4*DATA_BITS-1:0] pull_rounded;
+        wire [4*DATA_BITS-1:0] rounded;
         wire [31:0] orbit_wide = {{(32-ROW_WIDTH){1'b0}}, orbit_3};
 
         for (index = 0; index < 4; index = index + 1) begin : gen_components
-            wire [DATA_BITS+1:0] press_half = press_sums[(DATA_BITS+2)*index +: DATA_BITS+2] + HALF;
-            wire [DATA_BITS+1:0] pull_half = pull_sums[(DATA_BITS+2)*index +: DATA_BITS+2] + HALF;
+            wire [DATA_BITS+1:0] sum = sums[(DATA_BITS+2)*index +: DATA_BITS+2] + HALF;
 
-            assign press_rounded[DATA_BITS*index +: DATA_BITS] = press_half[FOLD_SHIFT +: DATA_BITS];
-            assign pull_rounded[DATA_BITS*index +: DATA_BITS] = pull_half[FOLD_SHIFT +: DATA_BITS];
-            wire _unused = &{1'b0, press_half, pull_half};
+            assign rounded[DATA_BITS*index +: DATA_BITS] = sum[FOLD_SHIFT +: DATA_BITS];
+            wire _unused = &{1'b0, sum};
         end
 
-        assign write_next = valid[3] || pull_waits;
+        assign write_next = valid[3] || valid[4];
 
         always @(posedge clock) begin
             write_valid <= write_next;
-            pull_waits <= valid[3];
-            pull_written <= pull_waits;
-            if (valid[3]) begin
-                pull_held <= pull_rounded;
-                write_address <= BASE[OPERAND_WIDTH-1:0] + orbit_wide[OPERAND_WIDTH-1:0];
-                write_data <= press_rounded;
-            end else begin
-                write_address <= write_address - LENGTH[OPERAND_WIDTH-1:0]; // y+ stands before |w|
-                write_data <= pull_held;
-            end
+            write_data <= rounded;
+            // y+ stands before |w|
+            write_address <= valid[3] ? BASE[OPERAND_WIDTH-1:0] + orbit_wide[OPERAND_WIDTH-1:0]
+                : write_address - LENGTH[OPERAND_WIDTH-1:0];
             if (reset) begin
                 write_valid <= 1'b0;
-                pull_waits <= 1'b0;
-                pull_written <= 1'b0;
             end
         end
 
@@ -147,7 +124,7 @@ module sptfra_we #(
             .clock (clock),
             .reset (reset),
             .start (taxel_y),
-            .done  (pull_written)
+            .done  (valid[5])
         );
 
         wire _unused = &{1'b0, orbit_wide};

@@ -41,10 +41,14 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .count("OPERAND_DEPTH", plan.operands.words())
         .count("SLOT_DEPTH", schedule.slots.len())
         .count("MIRROR_SIDE", mirror_side(plan));
+    let shifts = shifts(plan);
+    let each_shift = || shifts.iter().map(|&(shift, _)| shift as usize);
     programs(plan, products(plan, parameters))
         .when(schedule.ahead, |all| all.flag("AHEAD", true))
         .number("DESTINATION_BITS", destination_bits(plan.has_field()).into())
-        .table("SHIFTS", 6, shifts(plan))
+        .count("LEAST_SHIFT", each_shift().min().unwrap_or(0))
+        .count("LARGEST_SHIFT", each_shift().max().unwrap_or(0))
+        .table("SHIFTS", 6, shifts)
         .outer("ROM_DIR")
         .text("ROM_NAME", &plan.design.name)
         .count("NUMBER_BITS", 8 * pe_numbers(plan)[0].len())

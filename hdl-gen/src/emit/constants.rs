@@ -32,7 +32,7 @@ fn constant(module: &str, name: &str) -> i64 {
 #[test]
 fn modules_and_model_have_the_same_constants() {
     let one = 1 << FRICTION_FRACTION;
-    let expected: [(&str, &str, i64); 31] = [
+    let expected: [(&str, &str, i64); 32] = [
         ("sptfra_taxel_stream", "READ_TO_STRESS", TAXEL_TO_CEAN as i64),
         ("sptfra_spmv_collector", "TAKE_TO_BUS", TAKE_TO_BUS as i64),
         ("sptfra_direction", "CENTROID_FRACTION", line::CENTROID_FRACTION.into()),
@@ -51,6 +51,7 @@ fn modules_and_model_have_the_same_constants() {
         ("sptfra_op", "PULLING", PULLING),
         ("sptfra_output", "FRICTION_EXPONENT", FRICTION_FRACTION.into()), // a negative one
         ("sptfra_output", "ANGLE_EXPONENT", cordic::ANGLE_FRACTION_BITS.into()),
+        ("sptfra_grid_search", "SIDE", joint::search::SIDE as i64),
         ("sptfra_grid_level", "WEIGHT_BITS", joint::search::WEIGHT_BITS.into()),
         ("sptfra_friction", "LINEAR_FRACTION", joint::LINEAR_FRACTION.into()),
         ("sptfra_friction", "CUBIC_FRACTION", joint::CUBIC_FRACTION.into()),

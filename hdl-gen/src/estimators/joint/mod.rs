@@ -146,7 +146,6 @@ impl EstimatorBlock for JointPlan {
             .count("ROWS", design.sensor.rows)
             .count("CHANNELS", channels)
             .number("DATA_BITS", Factors::of(design).outside_bits().into())
-            .count("SIDE", self.search.side)
             .count("PARALLEL", self.search.parallel)
             .count("TAXELS", self.search.taxels)
             .number("FRACTION", search::FRACTION.into())

@@ -330,6 +330,8 @@ module small_4x3 #(
         .START_SEGMENTS   ({16'd35, 16'd23, 16'd0}),
         .START_SLOTS      ({32'd35, 32'd23, 32'd0}),
         .DESTINATION_BITS (4),
+        .LEAST_SHIFT      (17),
+        .LARGEST_SHIFT    (21),
         .SHIFTS           ({
             {4{6'd17}},
             6'd17, // 11: A3 r
