@@ -1,8 +1,6 @@
 //! Emission: a plan in, a map from relative path to bytes out. Nothing here touches the disk.
 
 pub mod boards;
-#[cfg(test)]
-mod constants;
 mod debug;
 mod flows;
 mod instance;
