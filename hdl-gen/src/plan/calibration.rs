@@ -9,7 +9,6 @@ pub use curve_map::CurveMap;
 pub use dead_map::DeadMap;
 
 use golden::design::{Calibration, CalibrationIn, Design};
-use serde::Serialize;
 
 use super::counts::OFFSET_FULL_SCALES;
 use super::curve_format::CurveFormat;
@@ -29,7 +28,7 @@ use crate::format::{Format, largest, pow2};
 ///
 /// Along a curve the banks' own makes values of counts before, in steps of `2^lsb` Pa, and
 /// `stress = round(value * mantissa * 2^(exponent + lsb) / 2^shift) + offset`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CalibrationPlan {
     /// Taxels of a frame.
     pub taxels: usize,

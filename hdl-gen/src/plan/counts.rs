@@ -1,7 +1,6 @@
 //! Counts to pascals: what a raw sensor's values are multiplied by and what is added, in fixed point.
 
 use golden::design::{Design, Input};
-use serde::Serialize;
 
 use super::PlanError;
 use super::curve::CurvePlan;
@@ -21,7 +20,7 @@ const MOST_COARSE: f64 = 16.0;
 ///
 /// A taxel's gain is a mantissa of [`GAIN_BITS`] and an exponent. So every gain is as exact as the largest, and no
 /// taxel's steps depend on another's gain. The numbers are those of a calibration in RAM.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CountsPlan {
     /// The curve between the two, if the sensor is not linear: then
     /// `stress = round(curve(count) * gain * 2^(exponent + lsb) / 2^shift) + offset`.

@@ -5,7 +5,6 @@ use std::ops::Deref;
 pub use golden::parity::mirror;
 use golden::parity::{COMPONENTS, swapped};
 pub use golden::products::{Coefficients, Epilogue, Step, Vector};
-use serde::Serialize;
 
 use super::matrix::{Entry, QuantisedMatrix};
 use crate::format::{FEWEST_ELEMENTS, round_shift};
@@ -36,7 +35,7 @@ pub const fn destination_bits(field: bool) -> u32 {
 pub const DESTINATIONS: usize = 16;
 
 /// The block that owns the lanes while a product runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Block {
     /// Weights.
     We,
@@ -63,7 +62,7 @@ pub fn take_to_operand(epilogue: Epilogue) -> u64 {
 }
 
 /// Rows in front of a product's own, whose results are sums over the frame and go to Co.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Preload {
     /// Index of the stored matrix.
     pub matrix: usize,
@@ -98,7 +97,7 @@ pub fn sum_channel(p: usize, q: usize) -> usize {
 
 /// A step of the list in hardware; it reads as its step. The stored matrix is one of [`super::Plan::matrices`], and its
 /// operands stand next to each other in the operand memory: column `k n + i` is element i of vector k.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Product {
     /// What it computes.
     pub step: Step,

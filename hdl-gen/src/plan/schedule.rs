@@ -11,8 +11,6 @@
 //! frame, and so are resultants alone; a field that the PEs put together takes two more. The hardware starts a program
 //! when its data and the PEs are there.
 
-use serde::Serialize;
-
 use super::matrix::{Entry, QuantisedMatrix};
 use super::partition::{Partitioner, Stream, Timing};
 pub use super::pe::{MAX_SEGMENT, PeProgram, RESULT_BUFFERS, Segment, SegmentKind, WriteBackSlot};
@@ -20,7 +18,7 @@ use super::product::{Epilogue, Product, Vector, mirror, spacing, take_to_operand
 use crate::timing::latency::{PROGRAM_GAP, collector_jump};
 
 /// When a product runs, in cycles from the first issue of its program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
     /// First issue cycle.
     pub start: u64,

@@ -1,7 +1,5 @@
 //! What a bank holds, its words and their CRC, and what a tare makes of it.
 
-use serde::Serialize;
-
 use super::{CalibrationPlan, CurveMap, DeadMap, Reading};
 use crate::format::round_shift;
 use crate::plan::gain::GAIN_BITS;
@@ -9,7 +7,7 @@ use crate::plan::gain::GAIN_BITS;
 /// Bits of a gain in its word: mantissa, then the exponent of the counts.
 const EXPONENT_MASK: u32 = (1 << crate::plan::counts::EXPONENT_BITS) - 1;
 /// What a bank holds, in numbers of the hardware.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bank {
     /// Mantissa and exponent of each taxel's gain.
     pub gains: Vec<(i32, i32)>,
@@ -23,7 +21,6 @@ pub struct Bank {
     /// Taxels that are replaced.
     pub dead: DeadMap,
     /// The curve of the counts, where the design has one.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub curve: Option<CurveMap>,
 }
 

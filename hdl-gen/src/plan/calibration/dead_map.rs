@@ -1,12 +1,10 @@
 //! What a bank says of dead taxels: which they are and the weights of the others, in as many places as there is room.
 
-use serde::Serialize;
-
 use crate::format::largest;
 use crate::plan::dead::{DeadPlan, MOST_WEIGHT, WEIGHT_BITS};
 
 /// A map of dead taxels, with the room that it has in a bank.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeadMap {
     /// Dead taxels for which there is room; 0: banks say nothing of them.
     pub room: usize,
