@@ -168,13 +168,6 @@ impl Outcome {
         let ends: Vec<u64> = self.exchanges.iter().map(|exchange| exchange.last_out).collect();
         (ends.len() > 1).then(|| timing::mean_interval(&ends))
     }
-
-    /// Mean distance between the ends of the packets, to the nearest cycle.
-    pub fn mean_interval(&self) -> Option<u64> {
-        let [first, .., last] = self.exchanges.as_slice() else { return None };
-        let distances = self.exchanges.len() as u64 - 1;
-        Some((last.last_out - first.last_out + distances / 2) / distances)
-    }
 }
 
 /// Why the traffic stopped.
