@@ -3,8 +3,6 @@
 pub mod boards;
 mod debug;
 mod flows;
-mod instance;
-mod line_length;
 mod linux;
 mod mcsr;
 mod metadata;
