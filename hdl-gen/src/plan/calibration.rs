@@ -14,9 +14,8 @@ use super::counts::OFFSET_FULL_SCALES;
 use super::curve_format::CurveFormat;
 use super::dead::DeadPlan;
 pub use super::gain::Reading;
-use super::gain::{GAIN_BITS, Gain, LARGEST_NUMBER, Scale};
+use super::gain::{GAIN_BITS, Gain, Scale};
 use super::{PlanError, Thresholds};
-use crate::cores::float_to_fixed;
 use crate::format::{Format, largest, pow2};
 
 /// How counts become stress where gains and offsets are written while frames run:
@@ -140,14 +139,9 @@ impl CalibrationPlan {
 
     /// The stress of a taxel's count, given as float32.
     pub fn stress_of(&self, bank: &Bank, taxel: usize, count: u32) -> Reading {
-        let gain = bank.gains[taxel];
         let scale = Scale { shift: self.shift, full_scale: self.full_scale };
-        let lsb = bank.curve.as_ref().map(|curve| curve.format.lsb);
-        let number = match &bank.curve {
-            Some(curve) => curve.curve.value_of(count),
-            None => float_to_fixed::convert(count, gain.1, LARGEST_NUMBER as u32),
-        };
-        scale.reading(number, gain, bank.offsets[taxel].into(), lsb, self.stress.bound)
+        let curve = bank.curve.as_ref().map(|map| &map.curve);
+        scale.stress_of(count, curve, bank.gains[taxel], bank.offsets[taxel].into(), self.stress.bound)
     }
 
     /// Bits of the widest offset, sign included.

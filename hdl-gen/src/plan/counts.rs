@@ -4,8 +4,7 @@ use golden::design::{Design, Input};
 
 use super::PlanError;
 use super::curve::CurvePlan;
-use super::gain::{GAIN_BITS, Gain, LARGEST_NUMBER, Reading, Scale};
-use crate::cores::float_to_fixed;
+use super::gain::{GAIN_BITS, Gain, Reading, Scale};
 use crate::format::{Format, pow2};
 
 /// Bits of the exponent at the float conversion.
@@ -81,12 +80,7 @@ impl CountsPlan {
         let index = self.index(taxel);
         let gain = (self.gains[index], self.exponents[index]);
         let scale = Scale { shift: self.shift, full_scale: self.full_scale };
-        let lsb = self.curve.as_ref().map(|curve| curve.lsb);
-        let number = match &self.curve {
-            Some(curve) => curve.value_of(count),
-            None => float_to_fixed::convert(count, gain.1, LARGEST_NUMBER as u32),
-        };
-        scale.reading(number, gain, self.offsets[index], lsb, stress.bound)
+        scale.stress_of(count, self.curve.as_ref(), gain, self.offsets[index], stress.bound)
     }
 
     /// The place of a taxel's constants.
