@@ -5,6 +5,8 @@ use std::fmt::Write;
 use golden::calibrate::recorded::Recorded;
 use golden::design::{Design, Sensor};
 
+use crate::svg::escaped;
+
 /// Sides of a plot in pixels, and its margins: room for a label of six digits on the left, for half of one on the right.
 const SIDES: [f64; 2] = [380.0, 300.0];
 const MARGIN: f64 = 64.0;
@@ -17,7 +19,7 @@ pub fn page(design: &Design, parts: &[(&str, &str, &Recorded)]) -> String {
          <style>body{{font:15px/1.45 sans-serif;max-width:58em;margin:2em auto;padding:0 1em;color:#222;background:#fff}}\
          svg{{margin:0 1em 1em 0}}text{{font:12px sans-serif;fill:#333}}h2{{margin-top:1.6em}}</style></head><body>\n\
          <h1>{0}: calibration from recordings</h1>\n",
-        escape(&design.name)
+        escaped(&design.name)
     );
     for (title, unit, found) in parts {
         let _ =
@@ -28,7 +30,7 @@ pub fn page(design: &Design, parts: &[(&str, &str, &Recorded)]) -> String {
             ("To be known", &found.remarks),
         ] {
             if !lines.is_empty() {
-                let items: String = lines.iter().map(|line| format!("<li>{}</li>\n", escape(line))).collect();
+                let items: String = lines.iter().map(|line| format!("<li>{}</li>\n", escaped(line))).collect();
                 let _ = write!(html, "<h3>{title}</h3>\n<ul>\n{items}</ul>\n");
             }
         }
@@ -162,7 +164,7 @@ fn gains(found: &Recorded, sensor: &Sensor) -> String {
     format!(
         "<svg width=\"{0:.0}\" height=\"{1:.0}\" role=\"img\">\n<text x=\"0\" y=\"18\">Gains: blue {2:.2} to red {3:.2}; crossed: not determined</text>\n\
          <g transform=\"translate(0 28)\">\n{cells}</g></svg>\n",
-        width.max(290.0),
+        width.max(SIDES[0]),
         height + 32.0,
         1.0 - spread,
         1.0 + spread
@@ -176,10 +178,6 @@ fn figure(value: f64) -> String {
         size if size >= 10.0 => format!("{value:.1}"),
         _ => format!("{value:.2}"),
     }
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]
