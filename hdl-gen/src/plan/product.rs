@@ -3,7 +3,6 @@
 use std::ops::Deref;
 
 pub use golden::parity::mirror;
-use golden::parity::{COMPONENTS, swapped};
 pub use golden::products::{Coefficients, Epilogue, Step, Vector};
 
 use super::matrix::{Entry, QuantisedMatrix};
@@ -124,13 +123,6 @@ impl Product {
     pub fn result_bound(matrix: &QuantisedMatrix, operand_bound: i64, shift: u32) -> i64 {
         // An accumulator has 48 bits: beyond that, and well within the 64 of this word, nothing is left.
         round_shift(matrix.largest_sum(operand_bound) as i64, shift.min(62))
-    }
-
-    /// For each component of the result, the channel that computes it.
-    pub fn channels(&self) -> [usize; COMPONENTS] {
-        std::array::from_fn(
-            |component| if self.mirrored.is_some() { swapped(component) } else { component } ^ self.parity,
-        )
     }
 
     /// Gives the rows of the stored matrix the numbers that their results have.

@@ -54,7 +54,7 @@ pub struct Program {
 }
 
 /// The PEs' work for one frame.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Schedule {
     /// Per PE.
     pub pes: Vec<PeProgram>,
