@@ -12,8 +12,8 @@ const SIDES: [f64; 2] = [380.0, 300.0];
 const MARGIN: f64 = 64.0;
 const RIGHT: f64 = 28.0;
 
-/// The page of what recordings told, each with a title and the unit of what was measured.
-pub fn page(design: &Design, parts: &[(&str, &str, &Recorded)]) -> String {
+/// The page of what recordings told: of uniform pressure, and of contacts with known forces.
+pub fn page(design: &Design, [uniform, forces]: [Option<&Recorded>; 2]) -> String {
     let mut html = format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: calibration</title>\n\
          <style>body{{font:15px/1.45 sans-serif;max-width:58em;margin:2em auto;padding:0 1em;color:#222;background:#fff}}\
@@ -21,7 +21,8 @@ pub fn page(design: &Design, parts: &[(&str, &str, &Recorded)]) -> String {
          <h1>{0}: calibration from recordings</h1>\n",
         escaped(&design.name)
     );
-    for (title, unit, found) in parts {
+    for (title, unit, found) in [("Uniform pressure", "Pa", uniform), ("Contacts with known forces", "N", forces)] {
+        let Some(found) = found else { continue };
         let _ =
             write!(html, "<h2>{title}</h2>\n{}{}{}\n", loads(found, unit), curve(found), gains(found, &design.sensor));
         for (title, lines) in [
