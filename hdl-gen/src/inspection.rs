@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::cores::{DspBlock, OLDER_LONG_BITS};
 use crate::emit::boards::Board;
-use crate::emit::{nnz, predicted, products};
+use crate::emit::{insert_options, nnz, predicted, products};
 use crate::plan::Plan;
 use crate::plan::product::Coefficients;
 use crate::plan::savings::savings;
@@ -49,21 +49,10 @@ pub fn figures(plan: &Plan) -> Value {
         "savings": savings(plan),
         "kernel_gain": kernel::gain(sensor, plan.design.algorithm.kernel),
     });
-    if plan.scales_frames() {
-        value["scaling"] = json!(plan.design.hardware.scaling);
-    }
-    if plan.design.algorithm.count_contacts {
-        value["count_contacts"] = json!({ "cycles": latency::count_contacts(sensor) });
-    }
     if plan.design.algorithm.contacts > 1 {
         value["contacts"] = plan.design.algorithm.contacts.into();
     }
-    if let Some(expected) = plan.design.expected_error() {
-        value["expected_error"] = json!(expected);
-    }
-    if let Some((key, own)) = plan.estimator.block().metadata().own {
-        value[key] = own;
-    }
+    insert_options(plan, &mut value);
     value
 }
 

@@ -58,7 +58,8 @@ pub enum WriteError {
     },
 }
 
-fn io_error(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> WriteError {
+/// What the operating system refused, with what was tried on what.
+pub fn io_error(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> WriteError {
     let path = path.to_owned();
     move |source| WriteError::Io { path, action, source }
 }

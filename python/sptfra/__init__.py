@@ -15,12 +15,12 @@ newtons, `F_z < 0` presses. Whatever is wrong with a design, a file or frames ra
 
 from importlib.metadata import version as _version
 
-from ._native import Design, Error, FrameLines, Past, Solver, beyond, calibrate, check, errors, load_frames, rest, scene
+from ._native import Design, Error, FrameLines, Past, Solver, beyond, calibrate, check, load_frames, rest, scene
 from .forces import Forces, Status
 from .hardware import generate, plan, simulate
 from .plot import plot_contacts, plot_field
 from .recorded import calibrate_forces, calibrate_uniform
-from .results import Beyond, Finding, Plan, Recorded, Rest, Scene, Simulation, Spread
+from .results import Beyond, Finding, Plan, Recorded, Rest, Scene, Simulation, Spread, errors
 
 #: That of the package, which is that of the commands.
 __version__ = _version("sptfra")

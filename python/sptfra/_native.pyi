@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .forces import Forces
-from .results import Beyond, Finding, Rest, Scene, Spread
+from .results import Beyond, Finding, Rest, Scene
 
 class Error(ValueError):
     """What is wrong with a design, with frames, or with a file: what, where, and what to do."""
@@ -206,12 +206,6 @@ def beyond(design: Design, frames: npt.ArrayLike) -> Beyond:
 def rest(design: Design, frames: npt.ArrayLike) -> Rest:
     """What frames, ten or more, tell of a sensor on which nothing presses: each taxel's offset, noise and drift."""
 
-def errors(forces: Forces | npt.ArrayLike, truth: Forces | npt.ArrayLike) -> dict[str, Spread]:
-    """Errors e_Fx, e_Fy, e_Fz in percent of the normal force, e_mu of 1, e_phi of a turn.
-
-    In place of `Forces` also numbers (n, 3): F_x, F_y, F_z in N.
-    """
-
 def calibrate(
     design: Design | str | os.PathLike[str],
     *,
@@ -230,12 +224,15 @@ def calibrate(
     `progress` is called with the pieces of work done and all, ten times a second.
     """
 
-def calibrate_forces(
-    design: Design, frames: npt.ArrayLike, forces: npt.ArrayLike | str | os.PathLike[str], *, name: str | None = None
+def calibrate_recorded(
+    design: Design,
+    frames: npt.ArrayLike,
+    measured: np.ndarray | str | os.PathLike[str],
+    *,
+    uniform: bool,
+    name: str | None = None,
 ) -> tuple[Design, str, str]: ...
-def calibrate_uniform(
-    design: Design, frames: npt.ArrayLike, pressures: npt.ArrayLike | str | os.PathLike[str], *, name: str | None = None
-) -> tuple[Design, str, str]: ...
+def errors(forces: np.ndarray, truth: np.ndarray) -> list[tuple[str, float, float]]: ...
 def inspect(design: Design) -> str: ...
 def generate(design: Design, folder: str | os.PathLike[str] | None = None) -> tuple[str, list[str]]: ...
 def simulate(design: Design, frames: npt.ArrayLike, *, seed: int = 1) -> tuple[Forces, str]: ...

@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import ClassVar
 
 import numpy as np
+import numpy.typing as npt
 
 
 class Status(enum.IntFlag):
@@ -118,9 +119,41 @@ class Forces:
         return table
 
 
+def _forces(
+    status: np.ndarray, numbers: np.ndarray, contacts: np.ndarray, records: np.ndarray | None, field: np.ndarray | None
+) -> Forces:
+    """Forces from the native half's arrays: the eleven numbers of each frame, one after the other."""
+    parts = map(np.ascontiguousarray, np.split(numbers, [3, 6, 7, 8, 10], axis=1))
+    resultant, torque, friction, direction, friction_xy, standard_error = parts
+    return Forces(
+        status=status,
+        resultant=resultant,
+        torque=torque,
+        friction=friction.ravel(),
+        direction=direction.ravel(),
+        friction_xy=friction_xy,
+        standard_error=standard_error.ravel(),
+        contacts=contacts,
+        records=None if records is None else _records(records),
+        field=field,
+    )
+
+
 def _records(values: np.ndarray) -> np.ndarray:
     """Structured records of (n, contacts, len(CONTACT)) numbers."""
     records = np.empty(values.shape[:2], dtype=list(CONTACT.items()))
     for index, name in enumerate(CONTACT):
         records[name] = values[..., index]
     return records
+
+
+def _double(frames: npt.ArrayLike) -> np.ndarray:
+    """Frames in double precision, a copy only where the numbers are others."""
+    if np.ma.is_masked(frames):
+        # numpy would hand on what the mask hides.
+        frames = np.ma.filled(np.ma.asarray(frames, np.float64), np.nan)
+    array = np.asarray(frames)
+    if array.dtype.kind not in "fiu":
+        wanted = "numbers, such as float32: the stress in pascals or the sensor's counts"
+        raise TypeError(f"frames are an array of {array.dtype}; give {wanted}")
+    return np.asarray(array, np.float64)

@@ -3,13 +3,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pathlib
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
+from . import _native
 from ._native import Design, Error
 from .forces import Forces
 
@@ -102,6 +105,32 @@ class Spread(NamedTuple):
     max: float
     #: The standard deviation, which the paper calls the standard error.
     standard_error: float
+
+
+def errors(forces: Forces | npt.ArrayLike, truth: Forces | npt.ArrayLike) -> dict[str, Spread]:
+    """Errors e_Fx, e_Fy, e_Fz in percent of the normal force, e_mu of 1, e_phi of a turn.
+
+    In place of `Forces` also numbers (n, 3): F_x, F_y, F_z in N.
+    """
+    found, known = _outcomes(forces), _outcomes(truth)
+    if len(found) != len(known):
+        raise ValueError(f"forces of {len(found)} frames and true forces of {len(known)}; give those of the same frames")
+    return {name: Spread(most, deviation) for name, most, deviation in _native.errors(found, known)}
+
+
+def _outcomes(forces: Forces | npt.ArrayLike) -> np.ndarray:
+    """F_x, F_y, F_z of each frame, and of `Forces` friction and direction."""
+    if hasattr(forces, "resultant"):
+        parts = [np.asarray(part, np.float64) for part in (forces.resultant, forces.friction, forces.direction)]
+        if parts[0].shape[1:] != (3,) or len({len(part) for part in parts}) > 1:
+            raise ValueError("resultant, friction and direction are not those of the same frames")
+        return np.column_stack(parts)
+    array = np.asarray(forces)
+    if array.shape[1:] == (3,):
+        with contextlib.suppress(TypeError, ValueError):
+            return array.astype(np.float64)
+    wanted = "what Solver.solve returns, or numbers of shape (n, 3): F_x, F_y, F_z in N"
+    raise ValueError(f"forces of shape {list(array.shape)}; give {wanted}")
 
 
 @dataclass(frozen=True)

@@ -6,33 +6,15 @@ use golden::frames::of_grid;
 use golden::sensor::Sensor;
 use golden::solver::{PIECE, Solution, Status};
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
 /// Frames, m values each, one after the other.
 pub struct Frames {
     /// The values in taxel order.
     pub values: Vec<f64>,
     taxels: usize,
-}
-
-/// An array of double precision with NaN for each masked value, in whose place numpy would hand on what the mask hides;
-/// any other value as it is.
-///
-/// # Errors
-///
-/// What numpy raises.
-pub fn unmasked<'py>(values: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-    let py = values.py();
-    let numpy = py.import(intern!(py, "numpy"))?;
-    let ma = numpy.getattr(intern!(py, "ma"))?;
-    if !ma.call_method1(intern!(py, "is_masked"), (values,))?.extract::<bool>()? {
-        return Ok(values.clone());
-    }
-    let double = values.call_method1(intern!(py, "astype"), (numpy.getattr(intern!(py, "float64"))?,))?;
-    ma.call_method1(intern!(py, "filled"), (double, f64::NAN))
 }
 
 impl Frames {
@@ -44,19 +26,8 @@ impl Frames {
     /// integer samples cannot be.
     pub fn of(design: &Design, frames: &Bound<'_, PyAny>) -> PyResult<Self> {
         let py = frames.py();
-        let numpy = py.import(intern!(py, "numpy"))?;
-        let array = numpy.call_method1(intern!(py, "asarray"), (unmasked(frames)?,))?;
-        let dtype = array.getattr(intern!(py, "dtype"))?;
-        let kind: String = dtype.getattr(intern!(py, "kind"))?.extract()?;
-        if !matches!(kind.as_str(), "f" | "i" | "u") {
-            return Err(PyTypeError::new_err(format!(
-                "frames are an array of {dtype}; give numbers, such as float32: the stress in pascals or the sensor's counts"
-            )));
-        }
-        let double = numpy.getattr(intern!(py, "float64"))?;
-        // A copy only where the numbers are others.
-        let array = numpy.call_method1(intern!(py, "asarray"), (array, double))?;
-        let array: PyReadonlyArrayDyn<'_, f64> = array.extract()?;
+        let double = py.import(intern!(py, "sptfra.forces"))?.call_method1(intern!(py, "_double"), (frames,))?;
+        let array: PyReadonlyArrayDyn<'_, f64> = double.extract()?;
         let sensor = &design.sensor;
         check_shape(array.shape(), sensor, &design.name)?;
         // Whatever the memory's order, the values come in that of the indices.
@@ -129,16 +100,16 @@ fn tuple(shape: &[usize]) -> String {
     format!("({}{})", sides.join(", "), if sides.len() == 1 { "," } else { "" })
 }
 
-/// What a frame yields besides its field and the forces of its contacts.
+/// Numbers of a frame besides its field and the forces of its contacts, and the place of the friction coefficient.
+const NUMBERS: usize = 11;
+const FRICTION: usize = 6;
+
+/// What a frame yields besides those.
 #[derive(Clone, Default)]
 struct Summary {
     status: Status,
-    resultant: [f64; 3],
-    torque: [f64; 3],
-    friction: f64,
-    direction: f64,
-    friction_xy: [f64; 2],
-    standard_error: f64,
+    /// Resultant, torque, friction, direction, friction along x and y, standard error.
+    numbers: [f64; NUMBERS],
     contacts: u8,
 }
 
@@ -187,7 +158,7 @@ impl Forces {
     pub fn of_slips(&mut self) -> impl Iterator<Item = (&mut Status, f64, &mut [ContactForces])> {
         let records = split(&mut self.records, self.of_frame, &vec![1; self.summaries.len()]);
         let frames = self.summaries.iter_mut().zip(records);
-        frames.map(|(summary, records)| (&mut summary.status, summary.friction, records))
+        frames.map(|(summary, records)| (&mut summary.status, summary.numbers[FRICTION], records))
     }
 
     /// The arrays in the package's class `sptfra.Forces`.
@@ -195,34 +166,16 @@ impl Forces {
         let Sensor { columns, rows, .. } = self.sensor;
         let all = &self.summaries;
         let frames = all.len();
-        let kwargs = PyDict::new(py);
-        let put = |name: &str, values: Vec<f64>, shape: &[usize]| kwargs.set_item(name, array(py, values, shape)?);
-        let each = |value: fn(&Summary) -> f64| all.iter().map(value).collect();
         let status: Vec<u16> = all.iter().map(|of| of.status.0 as u16).collect();
         let contacts: Vec<u8> = all.iter().map(|of| of.contacts).collect();
-        kwargs.set_item("status", status.into_pyarray(py))?;
-        put("resultant", all.iter().flat_map(|of| of.resultant).collect(), &[frames, 3])?;
-        put("torque", all.iter().flat_map(|of| of.torque).collect(), &[frames, 3])?;
-        put("friction", each(|of| of.friction), &[frames])?;
-        put("direction", each(|of| of.direction), &[frames])?;
-        put("friction_xy", all.iter().flat_map(|of| of.friction_xy).collect(), &[frames, 2])?;
-        put("standard_error", each(|of| of.standard_error), &[frames])?;
-        kwargs.set_item("contacts", contacts.into_pyarray(py))?;
-        if self.of_frame > 0 {
-            let of_contact = |contact| golden::forces::record(contact).into_iter().chain(contact.torque);
-            let values: Vec<f64> = self.records.iter().flat_map(of_contact).collect();
-            let each = golden::forces::OF_CONTACT.len() + golden::forces::TORQUE_OF_CONTACT.len();
-            let values = array(py, values, &[frames, self.of_frame, each])?;
-            kwargs.set_item("records", py.import("sptfra.forces")?.getattr("_records")?.call1((values,))?)?;
-        } else {
-            kwargs.set_item("records", py.None())?;
-        }
-        if self.has_field {
-            put("field", self.field, &[frames, rows, columns, 3])?;
-        } else {
-            kwargs.set_item("field", py.None())?;
-        }
-        py.import("sptfra.forces")?.getattr("Forces")?.call((), Some(&kwargs))
+        let numbers = array(py, all.iter().flat_map(|of| of.numbers).collect(), &[frames, NUMBERS])?;
+        let of_contact = |contact| golden::forces::record(contact).into_iter().chain(contact.torque);
+        let records: Vec<f64> = self.records.iter().flat_map(of_contact).collect();
+        let each = golden::forces::OF_CONTACT.len() + golden::forces::TORQUE_OF_CONTACT.len();
+        let records = (self.of_frame > 0).then(|| array(py, records, &[frames, self.of_frame, each])).transpose()?;
+        let field = self.has_field.then(|| array(py, self.field, &[frames, rows, columns, 3])).transpose()?;
+        let parts = (status.into_pyarray(py), numbers, contacts.into_pyarray(py), records, field);
+        py.import("sptfra.forces")?.getattr("_forces")?.call1(parts)
     }
 }
 
@@ -231,16 +184,9 @@ impl Piece<'_> {
     pub fn put(&mut self, index: usize, solution: &Solution) {
         let Solution { status, resultant, torque, standard_error, contacts, records, mu, phi, mu_x, mu_y, field } =
             solution;
-        self.summaries[index] = Summary {
-            status: *status,
-            resultant: *resultant,
-            torque: *torque,
-            friction: *mu,
-            direction: *phi,
-            friction_xy: [*mu_x, *mu_y],
-            standard_error: *standard_error,
-            contacts: *contacts as u8,
-        };
+        let [[f_x, f_y, f_z], [t_x, t_y, t_z]] = [*resultant, *torque];
+        let numbers = [f_x, f_y, f_z, t_x, t_y, t_z, *mu, *phi, *mu_x, *mu_y, *standard_error];
+        self.summaries[index] = Summary { status: *status, numbers, contacts: *contacts as u8 };
         self.records[records.len() * index..][..records.len()].copy_from_slice(records);
         let taxels = field[0].len();
         if self.field.is_empty() {

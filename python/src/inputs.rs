@@ -12,7 +12,8 @@ use golden::rest::{AtRest, TaxelAtRest};
 use golden::scene::{ChoiceError, Kind, Scene, SceneFrame};
 use golden::solver::{Solution, Status};
 use golden::words;
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use numpy::PyReadonlyArray2;
+use numpy::ndarray::ArrayView1;
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -218,70 +219,21 @@ fn known(frame: &SceneFrame) -> Solution {
     }
 }
 
-/// Errors of forces against the true ones, in percent.
+/// Errors of forces against the true ones, in percent: name, largest one, standard error. A row has `F_x`, `F_y` and `F_z`,
+/// then friction and direction, unless they are to follow from those.
 #[pyfunction]
-pub fn errors<'py>(
-    py: Python<'py>,
-    forces: &Bound<'py, PyAny>,
-    truth: &Bound<'py, PyAny>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let (found, truth) = (outcomes(forces)?, outcomes(truth)?);
-    if found.len() != truth.len() {
-        return Err(PyValueError::new_err(format!(
-            "forces of {} frames and true forces of {}; give those of the same frames",
-            found.len(),
-            truth.len()
-        )));
-    }
-    let summary = ErrorSummary::new(&truth.into_iter().zip(found).collect::<Vec<_>>());
-    let class = py.import("sptfra.results")?.getattr("Spread")?;
-    let spreads = PyDict::new(py);
-    for (name, spread) in ERROR_NAMES.iter().zip(summary.spreads()) {
-        spreads.set_item(name, class.call1((spread.max, spread.standard_error))?)?;
-    }
-    Ok(spreads)
+pub fn errors(forces: PyReadonlyArray2<'_, f64>, truth: PyReadonlyArray2<'_, f64>) -> Vec<(&'static str, f64, f64)> {
+    let pairs: Vec<_> = outcomes(&truth).into_iter().zip(outcomes(&forces)).collect();
+    let spreads = ErrorSummary::new(&pairs).spreads();
+    ERROR_NAMES.into_iter().zip(spreads).map(|(name, spread)| (name, spread.max, spread.standard_error)).collect()
 }
 
-/// What the errors are made of: `Forces`, or an array (n, 3) of `F_x`, `F_y`, `F_z`.
-fn outcomes(forces: &Bound<'_, PyAny>) -> PyResult<Vec<Outcome>> {
-    if !forces.hasattr("resultant")? {
-        return of_resultants(forces);
-    }
-    let double = |name: &str| {
-        let values = forces.getattr(name)?;
-        values.call_method1("astype", ("float64",))
+fn outcomes(rows: &PyReadonlyArray2<'_, f64>) -> Vec<Outcome> {
+    let outcome = |row: ArrayView1<'_, f64>| {
+        let [x, y, z] = [row[0], row[1], row[2]];
+        let follow = || [x.hypot(y) / z.abs(), y.atan2(x)];
+        let [friction, direction] = if row.len() == 5 { [row[3], row[4]] } else { follow() };
+        Outcome { force: [x, y, z], friction, direction }
     };
-    let resultant: PyReadonlyArray2<'_, f64> = double("resultant")?.extract()?;
-    let friction: PyReadonlyArray1<'_, f64> = double("friction")?.extract()?;
-    let direction: PyReadonlyArray1<'_, f64> = double("direction")?.extract()?;
-    let (resultant, friction, direction) = (resultant.as_array(), friction.as_array(), direction.as_array());
-    if resultant.ncols() != 3 || resultant.nrows() != friction.len() || friction.len() != direction.len() {
-        return Err(PyValueError::new_err("resultant, friction and direction are not those of the same frames"));
-    }
-    let frames = resultant.rows().into_iter().zip(friction).zip(direction);
-    let outcome = |((force, friction), direction): ((numpy::ndarray::ArrayView1<'_, f64>, &f64), &f64)| Outcome {
-        force: [force[0], force[1], force[2]],
-        friction: *friction,
-        direction: *direction,
-    };
-    Ok(frames.map(outcome).collect())
-}
-
-/// Outcomes of resultants alone: friction and direction follow from them.
-fn of_resultants(forces: &Bound<'_, PyAny>) -> PyResult<Vec<Outcome>> {
-    let numpy = forces.py().import("numpy")?;
-    let array = numpy.call_method1("asarray", (forces,))?;
-    let shape: Vec<usize> = array.getattr("shape")?.extract()?;
-    let double = array.call_method1("astype", ("float64",));
-    let (&[_, 3], Ok(double)) = (shape.as_slice(), double) else {
-        return Err(PyValueError::new_err(format!(
-            "forces of shape {shape:?}; give what Solver.solve returns, or numbers of shape (n, 3): F_x, F_y, F_z in N"
-        )));
-    };
-    let resultants: PyReadonlyArray2<'_, f64> = double.extract()?;
-    let outcome = |force: numpy::ndarray::ArrayView1<'_, f64>| {
-        let [x, y, z] = [force[0], force[1], force[2]];
-        Outcome { force: [x, y, z], friction: x.hypot(y) / z.abs(), direction: y.atan2(x) }
-    };
-    Ok(resultants.as_array().rows().into_iter().map(outcome).collect())
+    rows.as_array().rows().into_iter().map(outcome).collect()
 }

@@ -32,7 +32,7 @@ mod native {
     #[pymodule_export]
     use super::inputs::{FrameLines, beyond, check, errors, load_frames, rest, scene};
     #[pymodule_export]
-    use super::recorded::{calibrate_forces, calibrate_uniform};
+    use super::recorded::calibrate_recorded;
     #[pymodule_export]
     use super::solver::{Past, Solver};
 }

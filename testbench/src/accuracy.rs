@@ -3,6 +3,7 @@
 use golden::metrics::{ErrorSummary, Outcome, field_error};
 use golden::solver::{Solution, Status};
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 /// Largest errors against the f64 solver with the same filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -32,42 +33,27 @@ fn resultant_error(reference: &[f64; 3], found: &[f64; 3]) -> f64 {
     if difference == 0.0 { 0.0 } else { difference / reference[2].abs() }
 }
 
-/// Number of frames by status; a frame with several bits set counts under each of them.
+/// Keys of the counts in reports, each with its bit; of `good` none is set.
+const COUNTED: [(&str, Status); 13] = [
+    ("good", Status(0)),
+    ("no_contact", Status::NO_CONTACT),
+    ("direction_unknown", Status::DIRECTION_UNKNOWN),
+    ("at_bound", Status::AT_BOUND),
+    ("saturated", Status::SATURATED),
+    ("not_finite", Status::NOT_FINITE),
+    ("bad_length", Status::BAD_LENGTH),
+    ("low_confidence", Status::LOW_CONFIDENCE),
+    ("several_contacts", Status::SEVERAL_CONTACTS),
+    ("replaced", Status::REPLACED),
+    ("too_many_replaced", Status::TOO_MANY_REPLACED),
+    ("slip", Status::SLIP),
+    ("no_tension", Status::NO_TENSION),
+];
+
+/// Number of frames by status, in the order of [`COUNTED`]; a frame with several bits set counts under each of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
-pub struct StatusCounts {
-    /// No bit set.
-    pub good: usize,
-    /// Bit 0.
-    pub no_contact: usize,
-    /// Bit 1.
-    pub direction_unknown: usize,
-    /// Bit 2.
-    pub at_bound: usize,
-    /// Bit 3.
-    pub saturated: usize,
-    /// Bit 4.
-    pub not_finite: usize,
-    /// Bit 5.
-    pub bad_length: usize,
-    /// Bit 6.
-    #[serde(default)]
-    pub low_confidence: usize,
-    /// Bit 7.
-    #[serde(default)]
-    pub several_contacts: usize,
-    /// Bit 8.
-    #[serde(default)]
-    pub replaced: usize,
-    /// Bit 9.
-    #[serde(default)]
-    pub too_many_replaced: usize,
-    /// Bit 10.
-    #[serde(default)]
-    pub slip: usize,
-    /// Bit 11.
-    #[serde(default)]
-    pub no_tension: usize,
-}
+#[serde(from = "Map<String, Value>", into = "Map<String, Value>")]
+pub struct StatusCounts([usize; COUNTED.len()]);
 
 impl StatusCounts {
     /// Counts the answers.
@@ -77,38 +63,27 @@ impl StatusCounts {
 
     /// Counts statuses.
     pub fn of(statuses: &[Status]) -> Self {
-        let good = statuses.iter().filter(|status| status.0 == 0).count();
-        let mut counts = Self { good, ..Self::default() };
-        for (bit, count) in counts.by_bit() {
-            *count = statuses.iter().filter(|status| status.contains(bit)).count();
-        }
-        counts
+        let is = |status: Status, bit: Status| if bit.0 == 0 { status.0 == 0 } else { status.contains(bit) };
+        Self(COUNTED.map(|(_, bit)| statuses.iter().filter(|&&status| is(status, bit)).count()))
     }
 
     /// The counts that are not zero, with words for people.
-    pub fn present(mut self) -> Vec<(&'static str, usize)> {
-        let good = self.good;
-        let bits = self.by_bit();
-        let count = |bit: Status| bits.iter().find(|(of, _)| *of == bit).map_or(0, |(_, count)| **count);
-        let named = Status::NAMED.into_iter().map(|(bit, name)| (name, count(bit)));
-        std::iter::once(("good", good)).chain(named).filter(|&(_, count)| count > 0).collect()
+    pub fn present(self) -> Vec<(String, usize)> {
+        let all = COUNTED.into_iter().zip(self.0).filter(|&(_, count)| count > 0);
+        all.map(|((_, bit), count)| (bit.to_string(), count)).collect()
     }
+}
 
-    fn by_bit(&mut self) -> [(Status, &mut usize); 12] {
-        [
-            (Status::NO_CONTACT, &mut self.no_contact),
-            (Status::DIRECTION_UNKNOWN, &mut self.direction_unknown),
-            (Status::AT_BOUND, &mut self.at_bound),
-            (Status::SATURATED, &mut self.saturated),
-            (Status::NOT_FINITE, &mut self.not_finite),
-            (Status::BAD_LENGTH, &mut self.bad_length),
-            (Status::LOW_CONFIDENCE, &mut self.low_confidence),
-            (Status::SEVERAL_CONTACTS, &mut self.several_contacts),
-            (Status::REPLACED, &mut self.replaced),
-            (Status::TOO_MANY_REPLACED, &mut self.too_many_replaced),
-            (Status::SLIP, &mut self.slip),
-            (Status::NO_TENSION, &mut self.no_tension),
-        ]
+/// From a report, which may be one of before there were all of these bits.
+impl From<Map<String, Value>> for StatusCounts {
+    fn from(map: Map<String, Value>) -> Self {
+        Self(COUNTED.map(|(key, _)| map.get(key).and_then(Value::as_u64).unwrap_or(0) as usize))
+    }
+}
+
+impl From<StatusCounts> for Map<String, Value> {
+    fn from(counts: StatusCounts) -> Self {
+        COUNTED.into_iter().zip(counts.0).map(|((key, _), count)| (key.to_owned(), count.into())).collect()
     }
 }
 
@@ -150,10 +125,15 @@ mod tests {
     #[test]
     fn statuses_are_counted_by_bit() {
         let counts = StatusCounts::new(&[answer(0), answer(0b1010), answer(1 << 3), answer(1)]);
-        let expected =
-            StatusCounts { good: 1, no_contact: 1, direction_unknown: 1, saturated: 2, ..Default::default() };
+        let expected = StatusCounts([1, 1, 1, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0]);
         assert_eq!(counts, expected);
-        assert_eq!(counts.present()[0], ("good", 1));
+        let json = serde_json::to_string(&counts).unwrap();
+        assert!(
+            json.starts_with(r#"{"good":1,"no_contact":1,"direction_unknown":1,"at_bound":0,"saturated":2,"#),
+            "{json}"
+        );
+        assert_eq!(serde_json::from_str::<StatusCounts>(&json).unwrap(), counts);
+        assert_eq!(counts.present()[0], ("good".to_owned(), 1));
         assert_eq!(counts.present().len(), 4);
     }
 
@@ -171,6 +151,6 @@ mod tests {
             Status::NAMED.into_iter().map(|(bit, _)| bit).filter(|bit| *bit != Status::DROPPED).collect();
         let present = StatusCounts::of(&bits).present();
         assert_eq!(present.len(), bits.len(), "{present:?}");
-        assert!(present.iter().all(|&(_, count)| count == 1), "{present:?}");
+        assert!(present.iter().all(|(_, count)| *count == 1), "{present:?}");
     }
 }

@@ -5,21 +5,24 @@ use std::fmt::Write;
 use golden::calibrate::recorded::Recorded;
 use golden::design::{Design, Sensor};
 
+use crate::svg::escaped;
+
 /// Sides of a plot in pixels, and its margins: room for a label of six digits on the left, for half of one on the right.
 const SIDES: [f64; 2] = [380.0, 300.0];
 const MARGIN: f64 = 64.0;
 const RIGHT: f64 = 28.0;
 
-/// The page of what recordings told, each with a title and the unit of what was measured.
-pub fn page(design: &Design, parts: &[(&str, &str, &Recorded)]) -> String {
+/// The page of what recordings told: of uniform pressure, and of contacts with known forces.
+pub fn page(design: &Design, [uniform, forces]: [Option<&Recorded>; 2]) -> String {
     let mut html = format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: calibration</title>\n\
          <style>body{{font:15px/1.45 sans-serif;max-width:58em;margin:2em auto;padding:0 1em;color:#222;background:#fff}}\
          svg{{margin:0 1em 1em 0}}text{{font:12px sans-serif;fill:#333}}h2{{margin-top:1.6em}}</style></head><body>\n\
          <h1>{0}: calibration from recordings</h1>\n",
-        escape(&design.name)
+        escaped(&design.name)
     );
-    for (title, unit, found) in parts {
+    for (title, unit, found) in [("Uniform pressure", "Pa", uniform), ("Contacts with known forces", "N", forces)] {
+        let Some(found) = found else { continue };
         let _ =
             write!(html, "<h2>{title}</h2>\n{}{}{}\n", loads(found, unit), curve(found), gains(found, &design.sensor));
         for (title, lines) in [
@@ -28,7 +31,7 @@ pub fn page(design: &Design, parts: &[(&str, &str, &Recorded)]) -> String {
             ("To be known", &found.remarks),
         ] {
             if !lines.is_empty() {
-                let items: String = lines.iter().map(|line| format!("<li>{}</li>\n", escape(line))).collect();
+                let items: String = lines.iter().map(|line| format!("<li>{}</li>\n", escaped(line))).collect();
                 let _ = write!(html, "<h3>{title}</h3>\n<ul>\n{items}</ul>\n");
             }
         }
@@ -162,7 +165,7 @@ fn gains(found: &Recorded, sensor: &Sensor) -> String {
     format!(
         "<svg width=\"{0:.0}\" height=\"{1:.0}\" role=\"img\">\n<text x=\"0\" y=\"18\">Gains: blue {2:.2} to red {3:.2}; crossed: not determined</text>\n\
          <g transform=\"translate(0 28)\">\n{cells}</g></svg>\n",
-        width.max(290.0),
+        width.max(SIDES[0]),
         height + 32.0,
         1.0 - spread,
         1.0 + spread
@@ -176,10 +179,6 @@ fn figure(value: f64) -> String {
         size if size >= 10.0 => format!("{value:.1}"),
         _ => format!("{value:.2}"),
     }
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]

@@ -10,9 +10,9 @@ use hdl_gen::plan::{Plan, PlanError};
 use hdl_gen::timing::Timeline;
 use thiserror::Error;
 
-use crate::dut::{Dut, DutError};
+use crate::dut::DutError;
 use crate::simulate::{Cycles, Job, Simulation, SimulationError, simulate};
-use crate::stream::{Outcome, Pacing, Traffic, exchange};
+use crate::stream::Pacing;
 use crate::verilate::{BuildError, Built, RtlSources, Verilate};
 
 /// Why a design cannot be co-simulated.
@@ -71,17 +71,6 @@ pub fn pacing(plan: &Plan) -> Pacing {
     } else {
         Pacing::BackToBack
     }
-}
-
-/// Sends packets through a core, both streams free-running; back to back means as [`pacing`] has it.
-///
-/// # Errors
-/// [`CoSimulationError::Simulation`].
-pub fn send(core: &mut Dut, plan: &Plan, packets: &[Vec<u32>], pacing: Pacing) -> Result<Outcome, CoSimulationError> {
-    let pacing = if pacing == Pacing::BackToBack { self::pacing(plan) } else { pacing };
-    let traffic = Traffic::new(packets, timeout(plan)).with_pacing(pacing);
-    let sent = exchange(core, &traffic, |_| ());
-    Ok(sent.map_err(|source| SimulationError::Stream { mode: "free-running", source })?)
 }
 
 /// What the integer model answers to packets sent one after the other from reset.

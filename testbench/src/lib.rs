@@ -2,7 +2,6 @@
 //! the f64 solver judge the result.
 
 pub mod accuracy;
-pub mod banks;
 pub mod calibration_page;
 pub mod co_simulation;
 pub mod compare;

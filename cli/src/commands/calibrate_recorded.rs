@@ -155,10 +155,7 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
     }
     let mut contents = resolved.contents(&design, "Calibrated by `sptfra calibrate` from recordings.");
     if let Some(page_file) = page_file {
-        let parts = [("Uniform pressure", "Pa", &results[0]), ("Contacts with known forces", "N", &results[1])];
-        let parts: Vec<_> =
-            parts.iter().filter_map(|(title, unit, found)| Some((*title, *unit, found.as_ref()?))).collect();
-        contents.insert(0, (page_file.clone(), page(&design, &parts)));
+        contents.insert(0, (page_file.clone(), page(&design, results.each_ref().map(Option::as_ref))));
     }
     write_together(&contents)?;
     let [uniform, forces] = &results;

@@ -9,9 +9,9 @@ use golden::design::{Design, Estimator, PlanKind};
 use golden::output::{write_together, write_whole};
 
 use golden::progress::Progress;
+use hdl_gen::write::io_error;
 use testbench::sweep::grid::{Axes, FilterAxis, jobs};
 use testbench::sweep::page;
-use testbench::sweep::point::Verified;
 use testbench::sweep::store::Store;
 use testbench::sweep::{Outcomes, Simulate, Sweep, SweepError, SweepScene, csv_file};
 
@@ -127,13 +127,13 @@ pub fn run(arguments: &Args) -> message::Result {
     let page = place("report.html");
     write_whole(&page, page::render(&contents)?.as_bytes())?;
     drop(progress);
-    Ok(if arguments.json { json } else { summary(&outcomes, &arguments.out) }.into())
+    Ok(if arguments.json { json } else { summary(&outcomes, &contents, &arguments.out) }.into())
 }
 
 /// Writes the recommended designs in place of those of the sweep before, which may have had other names.
 fn write_recommended<'a>(out: &Path, files: impl Iterator<Item = &'a (String, String)>) -> Result<(), SweepError> {
     let folder = out.join(page::RECOMMENDED);
-    let failed = |action| SweepError::io(action, &folder);
+    let failed = |action| io_error(&folder, action);
     if folder.exists() {
         fs::remove_dir_all(&folder).map_err(failed("remove the recommended designs in"))?;
     }
@@ -144,29 +144,14 @@ fn write_recommended<'a>(out: &Path, files: impl Iterator<Item = &'a (String, St
     Ok(write_together(&files)?)
 }
 
-fn summary(outcomes: &Outcomes, out: &Path) -> String {
-    let Outcomes { points, computed } = outcomes;
-    let with = |verified| points.iter().filter(|point| point.verified == verified).count();
-    let mut lines = vec![format!("{} points, {computed} of them computed now", points.len())];
-    for verified in [Verified::Rtl, Verified::Model, Verified::Golden] {
-        let count = with(verified);
-        if count > 0 {
-            lines.push(format!("  {count:>6} {}", verified.title()));
-        }
-    }
-    lines.extend(refusals(outcomes).iter().map(|refusal| format!("         {refusal}")));
+fn summary(outcomes: &Outcomes, contents: &page::Contents, out: &Path) -> String {
+    let mut lines = vec![format!("{} points, {} of them computed now", outcomes.points.len(), outcomes.computed)];
+    lines.extend(contents.verified.iter().map(|(count, how)| format!("  {count:>6} {how}")));
+    lines.extend(contents.refusals.iter().map(|refusal| format!("         {refusal}")));
     let file = |name: &str| out.join(name).display().to_string();
     lines.push(format!("written: {}, {}, {}", file("report.html"), file("sweep.json"), file("sweep.csv")));
     if out.join(page::RECOMMENDED).is_dir() {
         lines.push(format!("the designs that the report recommends: {}", file(page::RECOMMENDED)));
     }
     lines.join("\n") + "\n"
-}
-
-/// Why points are not in hardware, each reason once.
-fn refusals(outcomes: &Outcomes) -> Vec<&str> {
-    let mut reasons: Vec<&str> = outcomes.points.iter().filter_map(|point| point.refusal.as_deref()).collect();
-    reasons.sort_unstable();
-    reasons.dedup();
-    reasons
 }

@@ -30,12 +30,6 @@ impl<const N: usize> From<i64> for Sint<N> {
     }
 }
 
-impl<const N: usize> From<Sint<N>> for i64 {
-    fn from(value: Sint<N>) -> Self {
-        value.0
-    }
-}
-
 impl<const N: usize> Add for Sint<N> {
     type Output = Self;
     fn add(self, right: Self) -> Self {

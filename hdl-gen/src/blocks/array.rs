@@ -48,7 +48,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .number("DESTINATION_BITS", destination_bits(plan.has_field()).into())
         .count("LEAST_SHIFT", each_shift().min().unwrap_or(0))
         .count("LARGEST_SHIFT", each_shift().max().unwrap_or(0))
-        .table("SHIFTS", 6, shifts)
+        .table("SHIFTS", 6, &shifts)
         .outer("ROM_DIR")
         .text("ROM_NAME", &plan.design.name)
         .count("NUMBER_BITS", 8 * pe_numbers(plan)[0].len())
@@ -98,9 +98,7 @@ fn products(plan: &Plan, parameters: Parameters) -> Parameters {
             product.result.name()
         )
     };
-    let of_each = |value: &dyn Fn(usize) -> u64, name: &dyn Fn(usize) -> String| -> Vec<(u64, String)> {
-        (0..products.len()).map(|index| (value(index), name(index))).collect()
-    };
+    let lengths: Vec<(u64, String)> = (0..products.len()).map(|index| (length(index), name(index))).collect();
     let place = |index: usize| plan.operands.place(products[index].operand());
     let base = |index: usize| match place(index) {
         Some(Place::Fixed(word)) => word as u64,
@@ -112,9 +110,9 @@ fn products(plan: &Plan, parameters: Parameters) -> Parameters {
     parameters
         .count("PRODUCTS", products.len())
         .number("COUNT_BITS", bits.into())
-        .table("LENGTHS", bits, of_each(&length, &name))
-        .table("WAITS", bits, of_each(&wait, &|_| String::new()))
-        .table("BASES", 16, of_each(&base, &|_| String::new()))
+        .table("LENGTHS", bits, &lengths)
+        .list("WAITS", bits, (0..products.len()).map(wait))
+        .list("BASES", 16, (0..products.len()).map(base))
         .mask("OF_STRESS", &mask(&|index| place(index) == Some(Place::StressBank)))
         .mask("MARKS", &mask(&is_read_again))
         .mask("REWINDS", &mask(&|index| rereads(index).is_some()))
@@ -126,15 +124,12 @@ fn products(plan: &Plan, parameters: Parameters) -> Parameters {
 
 fn programs(plan: &Plan, parameters: Parameters) -> Parameters {
     let programs = &plan.schedule.programs;
-    let of_each = |value: &dyn Fn(usize) -> usize| -> Vec<(u64, String)> {
-        (0..programs.len()).map(|index| (value(index) as u64, String::new())).collect()
-    };
     parameters
         .count("PROGRAMS", programs.len())
-        .table("FIRSTS", 8, of_each(&|index| programs[index].first))
-        .table("START_WORDS", 32, of_each(&|index| programs[index].word))
-        .table("START_SEGMENTS", 16, of_each(&|index| programs[index].segment))
-        .table("START_SLOTS", 32, of_each(&|index| programs[index].slot))
+        .list("FIRSTS", 8, programs.iter().map(|program| program.first as u64))
+        .list("START_WORDS", 32, programs.iter().map(|program| program.word as u64))
+        .list("START_SEGMENTS", 16, programs.iter().map(|program| program.segment as u64))
+        .list("START_SLOTS", 32, programs.iter().map(|program| program.slot as u64))
 }
 
 /// Bits dropped by destination. One that no product has repeats the one before, so that it costs nothing.

@@ -203,7 +203,7 @@ fn of_bank_curve(parameters: Parameters, map: &CurveMap) -> Parameters {
     let knots = (0..map.format.room).map(|place| i64::from(map.segment(place)[0].cast_signed()));
     parameters
         .number("CURVE_LEVELS", map.format.levels().into())
-        .numbers("CURVE_KNOTS", LONG_BITS, knots.collect())
+        .numbers("CURVE_KNOTS", LONG_BITS, knots)
         .signed("CURVE_LAST", LONG_BITS, map.curve.last)
         .unsigned("CURVE_COUNT", 7, map.curve.segments.len() as u64)
         .signed("CURVE_LAST_VALUE", LONG_BITS, map.end)

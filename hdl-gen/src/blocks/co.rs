@@ -26,7 +26,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .count("ELEMENTS", plan.elements())
         .number("DATA_BITS", plan.design.hardware.data_bits.into())
         .count("OPERAND_DEPTH", plan.operands.words())
-        .table("STORE_BASES", 16, bases)
+        .table("STORE_BASES", 16, &bases)
         .mask("STORE_IN_BANK", &in_bank)
         .signed("RESIDUAL_BANK", 16, plan.operands.residual_bank() as i64)
         .when(!plan.arms.is_empty(), |all| all.outer("ROM_DIR").text("ROM_NAME", &plan.design.name))

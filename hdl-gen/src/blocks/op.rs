@@ -16,7 +16,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .count("COLUMNS", plan.design.sensor.columns)
         .count("ROWS", plan.design.sensor.rows)
         .flag("FIELD", plan.has_field())
-        .flag("DEPENDENT", plan.estimator.block().answers_with_a_line())
+        .flag("DEPENDENT", plan.estimator.block().pitch().is_some())
         .number("SUM_LSB", plan.formats.g.lsb.into())
         .number("TORQUE_LSB", plan.formats.torque_lsb.into())
         .number("FIELD_LSB", field_lsb(plan).into())

@@ -1,6 +1,5 @@
 //! The register bank `sptfra_registers`: what it says of a design.
 
-use crate::parameters::Base;
 use crate::parameters::Parameters;
 use crate::plan::Plan;
 
@@ -12,28 +11,18 @@ pub fn samples(plan: &Plan) -> u8 {
     plan.streams().sample as u8
 }
 
-/// What a read-only register holds: the bank's instance has a parameter of this name, the register map's template the same in
-/// small letters.
+/// What the read-only registers hold: name, width of the field, base and digits. The bank's instance has a parameter of the
+/// name, the register map's template the same in small letters. Truths are 0 or 1: they are reset values in the register
+/// map.
 #[derive(Clone, Debug)]
-struct Constant {
-    name: &'static str,
-    /// As wide as its field.
-    bits: u32,
-    base: Base,
-    digits: String,
-}
-
-/// What the read-only registers hold. Truths are 0 or 1: they are reset values in the register map.
-#[derive(Clone, Debug)]
-pub struct Constants(Vec<Constant>);
+pub struct Constants(Vec<(&'static str, u32, char, String)>);
 
 impl Constants {
     /// Those of a design with the given hash of sixteen hexadecimal digits.
     pub fn new(plan: &Plan, hash: &str) -> Self {
         let (design, hardware) = (&plan.design, &plan.design.hardware);
-        let decimal =
-            |name, bits, value: &dyn ToString| Constant { name, bits, base: Base::Decimal, digits: value.to_string() };
-        let hexadecimal = |name, bits, digits: String| Constant { name, bits, base: Base::Hexadecimal, digits };
+        let decimal = |name, bits, value: &dyn ToString| (name, bits, 'd', value.to_string());
+        let hexadecimal = |name, bits, digits: String| (name, bits, 'h', digits);
         let full_scale = (hardware.full_scale_pa as f32).to_bits();
         Self(vec![
             decimal("MAP_VERSION", 8, &MAP_VERSION),
@@ -63,13 +52,11 @@ impl Constants {
 
     /// The parameters of the bank's instance.
     pub fn parameters(&self) -> Parameters {
-        self.0.iter().fold(Parameters::new(), |all, Constant { name, bits, base, digits }| {
-            all.digits(name, *bits, *base, digits.clone())
-        })
+        self.0.iter().fold(Parameters::new(), |all, (name, bits, base, digits)| all.digits(name, *bits, *base, digits))
     }
 
     /// Their names in small letters, and their digits.
     pub fn digits(&self) -> impl Iterator<Item = (String, &str)> {
-        self.0.iter().map(|constant| (constant.name.to_lowercase(), constant.digits.as_str()))
+        self.0.iter().map(|(name, .., digits)| (name.to_lowercase(), digits.as_str()))
     }
 }

@@ -17,9 +17,7 @@ use crate::plan::crosstalk::CrosstalkPlan;
 use crate::plan::dead::DeadPlan;
 use crate::plan::filtered::Filtered;
 use crate::plan::layout::OperandLayout;
-use crate::plan::matrix::QuantisedMatrix;
 use crate::plan::passes;
-use crate::plan::product::Product;
 use crate::plan::quantise::{Quantised, quantise, taxel_force_n};
 use crate::plan::schedule::Schedule;
 use crate::plan::smoothing::SmoothingPlan;
@@ -62,73 +60,72 @@ fn check_widths(design: &Design) -> Result<(), PlanError> {
     Ok(())
 }
 
-/// What does not depend on the number of lanes.
-struct SharedPlan {
-    condition: Condition,
-    nnz: Nnz,
-    matrices: Vec<QuantisedMatrix>,
-    products: Vec<Product>,
-    formats: Formats,
-    counts: Option<CountsPlan>,
-    calibration: Option<CalibrationPlan>,
-    dead: Option<DeadPlan>,
-    thresholds: Thresholds,
-}
-
-impl SharedPlan {
-    fn new(design: &Design) -> Result<Self, PlanError> {
+impl Plan {
+    /// The plan of a design whose estimator and widths have hardware.
+    fn of(design: &Design) -> Result<Self, PlanError> {
         let hardware = &design.hardware;
-        let matrices = Matrices::of(design)?;
+        let (elements, channels) = (elements(design), channels(design));
+        let geometry = Matrices::of(design)?;
         // What a frame can bring of it, so that a reading of just the full scale reaches the bound.
         let stress = Format::covering(hardware.full_scale_in_frames(), Factors::of(design).outside_bits());
         let thresholds = thresholds(design, stress)?;
         let calibration = CalibrationPlan::new(design, stress, &thresholds)?;
         let counts = if calibration.is_some() { None } else { CountsPlan::new(design, stress)? };
-        let dead = DeadPlan::new(design);
         let list = passes::products(design);
-        let filtered = Filtered::new(design, &matrices)?;
+        let filtered = Filtered::new(design, &geometry)?;
         let quantised = quantise(&list, &filtered, design, stress)?;
         let products = passes::bind(&list, &quantised);
         let nnz = Nnz(filtered.nnz(&design.algorithm.filter)?);
-        let Quantised { matrices: stored, formats, rounding_n, .. } = quantised;
-        let condition = Condition { c33: matrices.condition_c33(), aat: matrices.condition_aat() };
+        let Quantised { matrices, formats, rounding_n, .. } = quantised;
+        let condition = Condition { c33: geometry.condition_c33(), aat: geometry.condition_aat() };
         check_force_resolution(design, &formats, condition, rounding_n)?;
-        Ok(Self { condition, nnz, matrices: stored, products, formats, counts, calibration, dead, thresholds })
-    }
-
-    /// Lays the plan out on the lanes of `design`, which differs from the one it is of in nothing else.
-    fn on_lanes(&self, design: &Design) -> Plan {
-        let hardware = &design.hardware;
-        let (elements, channels) = (elements(design), channels(design));
-        let schedule =
-            Schedule::new(&self.products, &self.matrices, hardware.lanes / channels, hardware.lanes > MANY_LANES);
-        let Formats { stress, u, .. } = self.formats;
-        let estimator = EstimatorPlan::new(&Config { design, elements, channels, stress, u: u.narrowed() });
-        let mut plan = Plan {
+        let mut plan = Self {
             design: design.clone(),
-            condition: self.condition,
-            nnz: self.nnz.clone(),
-            matrices: self.matrices.clone(),
-            products: self.products.clone(),
-            formats: self.formats,
+            condition,
+            nnz,
+            matrices,
+            formats,
             arms: if channels == 1 { arms(&design.sensor) } else { Vec::new() },
-            counts: self.counts.clone(),
-            calibration: self.calibration.clone(),
-            dead: self.dead.clone(),
+            counts,
+            calibration,
+            dead: DeadPlan::new(design),
             crosstalk: CrosstalkPlan::new(design),
             creep: CreepPlan::new(design),
             smoothing: SmoothingPlan::new(design, stress),
-            thresholds: self.thresholds,
-            estimator,
-            operands: OperandLayout::new(&self.products, elements, channels as u32 * hardware.data_bits),
-            schedule,
+            thresholds,
+            estimator: estimator(design, &formats),
+            operands: OperandLayout::new(&products, elements, channels as u32 * hardware.data_bits),
+            products,
+            schedule: Schedule::default(),
             timeline: Timeline::default(),
             resources: Resources::default(),
         };
-        plan.timeline = control::timeline(&durations(&plan), plan.schedule.issue_cycles());
-        plan.resources = Resources::of(blocks::costs(&plan), DspBlock::of_part(&plan.design.hardware.part));
+        plan.lay_out();
+        Ok(plan)
+    }
+
+    /// The same plan on so many lanes.
+    fn on_lanes(&self, lanes: usize) -> Self {
+        let mut plan = self.clone();
+        plan.design.hardware.lanes = lanes;
+        plan.estimator = estimator(&plan.design, &plan.formats);
+        plan.lay_out();
         plan
     }
+
+    /// What the design's lanes decide: who computes what, and when.
+    fn lay_out(&mut self) {
+        let lanes = self.design.hardware.lanes;
+        self.schedule = Schedule::new(&self.products, &self.matrices, lanes / self.channels(), lanes > MANY_LANES);
+        self.timeline = control::timeline(&durations(self), self.schedule.issue_cycles());
+        self.resources = Resources::of(blocks::costs(self), DspBlock::of_part(&self.design.hardware.part));
+    }
+}
+
+fn estimator(design: &Design, formats: &Formats) -> EstimatorPlan {
+    let Formats { stress, u, .. } = *formats;
+    let (elements, channels) = (elements(design), channels(design));
+    EstimatorPlan::new(&Config { design, elements, channels, stress, u: u.narrowed() })
 }
 
 fn check_force_resolution(

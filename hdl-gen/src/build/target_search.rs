@@ -3,7 +3,7 @@
 use golden::design::{Design, Estimator, MAX_LANES, Optimise, Outputs, PlanKind, STREAM_BITS};
 use golden::parity::COMPONENTS;
 
-use super::{SharedPlan, check_widths};
+use super::check_widths;
 use crate::estimators;
 use crate::plan::{Plan, PlanError};
 
@@ -14,7 +14,7 @@ impl Plan {
     /// [`PlanError`] if the plan has no hardware for the estimator, the geometry is singular, the filter empties a matrix, or
     /// the widths are too small.
     pub fn new(design: &Design) -> Result<Self, PlanError> {
-        Ok(checked(design)?.on_lanes(design))
+        checked(design)
     }
 
     /// As [`Plan::new`], on the fewest lanes whose latency is `target_us` microseconds at most, in place of the design's. The
@@ -33,23 +33,21 @@ impl Plan {
     }
 }
 
-/// What all plans of a design share, if its estimator and widths have hardware.
-fn checked(design: &Design) -> Result<SharedPlan, PlanError> {
+/// The plan of a design, if its estimator and widths have hardware.
+fn checked(design: &Design) -> Result<Plan, PlanError> {
     if !estimators::has_hardware(design) {
         let problem = "[algorithm] plan = \"paper\": the paper's plan has the line search only; write plan = \"reduced\", or \
                        estimator = \"line\" and remove gain, friction_correction and correction";
         return Err(PlanError::Key(problem.to_owned()));
     }
     check_widths(design)?;
-    SharedPlan::new(design)
+    Plan::of(design)
 }
 
-fn meet(shared: &SharedPlan, design: &Design, target_us: f64) -> Result<Plan, PlanError> {
-    let mut settled = design.clone();
+fn meet(plan: &Plan, design: &Design, target_us: f64) -> Result<Plan, PlanError> {
     let mut fastest: Option<Plan> = None;
     for lanes in lanes() {
-        settled.hardware.lanes = lanes;
-        let plan = shared.on_lanes(&settled);
+        let plan = plan.on_lanes(lanes);
         if is_met(&plan, target_us) {
             return Ok(plan);
         }
@@ -83,14 +81,8 @@ fn is_met(plan: &Plan, target_us: f64) -> bool {
 /// the streams, the smallest that leaves them as they are. Each was planned, on so many lanes, the most first.
 fn remedies(design: &Design, target_us: f64) -> String {
     let meets = |change: &Change| {
-        let mut changed = change.apply(design);
-        let shared = SharedPlan::new(&changed);
-        shared.is_ok_and(|shared| {
-            lanes().rev().any(|lanes| {
-                changed.hardware.lanes = lanes;
-                is_met(&shared.on_lanes(&changed), target_us)
-            })
-        })
+        let plan = Plan::of(&change.apply(design));
+        plan.is_ok_and(|plan| lanes().rev().any(|lanes| is_met(&plan.on_lanes(lanes), target_us)))
     };
     let mut changes = changes(design).into_iter();
     let first = changes.find(meets);

@@ -1,8 +1,8 @@
 //! The leaf cores: hardware whose widths do not depend on the geometry, the same in every design.
 //!
 //! Each file states what a core computes, bit for bit, and when; the integer model computes with these references, and
-//! a test compares each core's Verilog with its reference. Of multipliers and the skid buffer the test itself has the
-//! reference. The Verilog lies in `hdl-gen/rtl`; the package `sptfra-hdl-cores` prints that of cores without parameters
+//! a test compares each core's Verilog with its reference. Of multipliers, the skid buffer and the row sequencer the test
+//! itself has the reference. The Verilog lies in `hdl-gen/rtl`; the package `sptfra-hdl-cores` prints that of cores without parameters
 //! from descriptions in rust-hdl.
 
 pub mod axis_skid;
@@ -10,7 +10,6 @@ pub mod cordic;
 pub mod fixed_to_float;
 pub mod float_to_fixed;
 pub mod ratio;
-pub mod row_sequencer;
 
 /// Width of the shorter operand of a multiplier, as in one DSP48E2.
 pub const SHORT_BITS: u32 = 18;

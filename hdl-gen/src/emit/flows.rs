@@ -3,7 +3,7 @@
 //! They name the files that the folder holds, relative to the folder, so they come after everything else.
 
 use golden::design::Design;
-use serde::Serialize;
+use serde_json::{Value, json};
 use tera::context;
 
 use crate::plan::Plan;
@@ -41,19 +41,12 @@ const FILES: [(&str, &str); 12] = [
 ];
 
 /// A board with the addresses of its registers as the script writes them.
-#[derive(Serialize)]
-struct Placed {
-    #[serde(flatten)]
-    board: Board,
-    dma_address: String,
-    core_address: String,
-}
-
-impl Placed {
-    fn new(board: &Board) -> Self {
-        let [dma_address, core_address] = [board.registers, board.core_registers()].map(|at| format!("{at:#010X}"));
-        Self { board: board.clone(), dma_address, core_address }
+fn placed(board: &Board) -> Value {
+    let mut value = json!(board);
+    for (key, address) in [("dma_address", board.registers), ("core_address", board.core_registers())] {
+        value[key] = format!("{address:#010X}").into();
     }
+    value
 }
 
 /// Vendor, library and version, which a checked design has.
@@ -115,7 +108,7 @@ pub fn insert(
         // Nets that a logic analyser is for, where the design marks them, and its samples.
         debug => &debug.then(|| debug::nets(&core, debug::always_zero(plan))),
         samples => &debug::samples(plan.timeline.latency_cycles),
-        boards => &boards.iter().map(Placed::new).collect::<Vec<_>>(),
+        boards => &boards.iter().map(placed).collect::<Vec<_>>(),
     };
     for (path, template) in FILES {
         if (path == SIMULATION && testbench.is_none()) || (path == ANALYSER && !debug) {

@@ -11,7 +11,7 @@ use crate::plan::streams::WORD_BITS;
 use crate::plan::{Plan, words};
 use crate::timing::latency;
 
-use super::{EmitError, FileMap, VERSION, registers};
+use super::{FileMap, VERSION, registers};
 
 /// The predicted figures, under the names that `sptfra inspect --json` uses too.
 pub fn predicted(plan: &Plan) -> Value {
@@ -101,11 +101,25 @@ fn output(plan: &Plan) -> Value {
     json!(output)
 }
 
-/// The file's bytes. `files` are the others of the folder.
-///
-/// # Errors
-/// [`EmitError::Metadata`] if a value has no JSON form.
-pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, EmitError> {
+/// Adds what only some designs have, under the names that `sptfra inspect --json` uses too.
+pub fn insert_options(plan: &Plan, value: &mut Value) {
+    let design = &plan.design;
+    if plan.scales_frames() {
+        value["scaling"] = json!(design.hardware.scaling);
+    }
+    if design.algorithm.count_contacts {
+        value["count_contacts"] = json!({ "cycles": latency::count_contacts(&design.sensor) });
+    }
+    if let Some(expected) = design.expected_error() {
+        value["expected_error"] = json!(expected);
+    }
+    if let Some((key, own)) = plan.estimator.block().metadata().own {
+        value[key] = own;
+    }
+}
+
+/// The file's text. `files` are the others of the folder.
+pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> String {
     let slots: Vec<Value> = plan
         .operands
         .slots()
@@ -161,12 +175,6 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
     if plan.design.hardware.control {
         value["registers"] = json!(registers::map_path(plan));
     }
-    if plan.scales_frames() {
-        value["scaling"] = json!(plan.design.hardware.scaling);
-    }
-    if plan.design.algorithm.count_contacts {
-        value["count_contacts"] = json!({ "cycles": latency::count_contacts(&plan.design.sensor) });
-    }
     if let Some(dead) = &plan.dead {
         value["dead_taxels"] = json!({ "taxels": dead.taxels, "weight_lsb": -i64::from(dead.shift) });
     }
@@ -174,13 +182,6 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         let weight_lsb = -i64::from(map.dead.shift);
         value["dead_taxels"] = json!({ "taxels": map.dead.taxels, "weight_lsb": weight_lsb, "replaceable": map.room });
     }
-    if let Some(expected) = plan.design.expected_error() {
-        value["expected_error"] = json!(expected);
-    }
-    if let Some((key, own)) = estimator.own {
-        value[key] = own;
-    }
-    let mut text = serde_json::to_vec_pretty(&value)?;
-    text.push(b'\n');
-    Ok(text)
+    insert_options(plan, &mut value);
+    format!("{value:#}\n")
 }

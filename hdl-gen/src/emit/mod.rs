@@ -1,16 +1,11 @@
 //! Emission: a plan in, a map from relative path to bytes out. Nothing here touches the disk.
 
 pub mod boards;
-#[cfg(test)]
-mod constants;
 mod debug;
 mod flows;
-mod instance;
-mod line_length;
 mod linux;
 mod mcsr;
 mod metadata;
-mod modules;
 mod origin;
 mod prefix;
 mod readme;
@@ -26,13 +21,14 @@ use std::collections::BTreeMap;
 use golden::scene::SceneError;
 use thiserror::Error;
 
+use crate::cores::Multiplier;
 use crate::plan::Plan;
 
 use boards::Board;
 
 pub use prefix::{Prefix, PrefixError};
 
-pub use metadata::{ProductEntry, nnz, predicted, products};
+pub use metadata::{ProductEntry, insert_options, nnz, predicted, products};
 
 /// Relative path, with forward slashes, to contents.
 pub type FileMap = BTreeMap<String, Vec<u8>>;
@@ -48,9 +44,6 @@ pub enum EmitError {
         /// What the engine says.
         source: tera::Error,
     },
-    /// Metadata could not be serialised.
-    #[error("metadata.json: {0}; please report this design")]
-    Metadata(#[from] serde_json::Error),
     /// A board's file is not what it should be.
     #[error("boards: {0}; please report this")]
     Board(#[from] toml::de::Error),
@@ -91,9 +84,12 @@ pub fn emit_for(plan: &Plan, options: &Options) -> Result<FileMap, EmitError> {
     let mut files = FileMap::new();
     let design = plan.design.to_toml();
     let hash = plan.design.hash();
-    for (module, text) in modules::render(plan, &hash, options.debug)? {
-        files.insert(format!("rtl/{module}.v"), text.into_bytes());
-    }
+    let mut modules = vec![top::render(plan, options.debug)?];
+    modules.extend(registers::render(plan, &hash)?);
+    let multiplier = Multiplier::of_part(&plan.design.hardware.part);
+    let used = rtl::used_by(modules.iter().map(|(_, text)| text.as_str()), &top::without(plan), multiplier);
+    modules.extend(used.into_iter().map(|(module, text)| (module.to_owned(), text.to_owned())));
+    files.extend(modules.into_iter().map(|(module, text)| (format!("rtl/{module}.v"), text.into_bytes())));
     roms::insert(plan, &mut files);
     sim::insert(plan, &mut files)?;
     mcsr::insert(plan, &mut files);
@@ -111,7 +107,7 @@ pub fn emit_for(plan: &Plan, options: &Options) -> Result<FileMap, EmitError> {
     if let Some(prefix) = &options.prefix {
         prefix::rename(&mut files, prefix);
     }
-    let metadata = metadata::metadata(plan, &hash, &files)?;
-    files.insert("metadata.json".to_owned(), metadata);
+    let metadata = metadata::metadata(plan, &hash, &files);
+    files.insert("metadata.json".to_owned(), metadata.into_bytes());
     Ok(files)
 }

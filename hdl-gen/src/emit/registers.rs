@@ -9,7 +9,6 @@ use crate::blocks::registers::Constants;
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
 
-use super::instance::verilog;
 use super::template::{design_module, one};
 use super::{EmitError, FileMap};
 
@@ -78,7 +77,7 @@ fn context(plan: &Plan, hash: &str) -> Context {
         // The design's rate of averages; 0 where frames are not averaged.
         smoothing => &plan.smoothing.as_ref().map_or(0, |of| of.rate),
         // Parameters of the bank.
-        registers => &verilog(&constants.parameters()),
+        registers => &constants.parameters().verilog(),
         calibration => &plan.calibration.as_ref().map(of_calibration),
     };
     for (name, digits) in constants.digits() {
@@ -93,8 +92,8 @@ fn of_calibration(of: &CalibrationPlan) -> Value {
     let first = of.power_up.gain_words().next().unwrap_or_default();
     let [command_bits, words_bits] = calibration::bank_bits(of);
     json!({
-        "control": verilog(&calibration::control(of)),
-        "registers": verilog(&calibration::registers(of)),
+        "control": calibration::control(of).verilog(),
+        "registers": calibration::registers(of).verilog(),
         // Bits of what goes between the banks and their control.
         "command_bits": command_bits,
         "words_bits": words_bits,

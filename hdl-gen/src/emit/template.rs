@@ -3,7 +3,6 @@
 use tera::{Context, Tera};
 
 use super::EmitError;
-use super::line_length::wrap;
 
 /// The text of one module of the design.
 ///
@@ -18,10 +17,10 @@ pub(super) fn one(module: &str, template: &str, context: &Context) -> Result<Str
         .map_err(|source| EmitError::Template { template: module.to_owned(), source })
 }
 
-/// Puts the directives that no module should miss behind the leading comment of `body`, and breaks long lines.
+/// Puts the directives that no module should miss behind the leading comment of `body`.
 fn framed(body: &str) -> String {
     let comment_end = body.find("\nmodule ").map_or(0, |position| position + 1);
     let (comment, code) = body.split_at(comment_end);
     let code = code.trim_end();
-    wrap(&format!("{comment}\n`default_nettype none\n\n{code}\n\n`default_nettype wire\n"))
+    format!("{comment}\n`default_nettype none\n\n{code}\n\n`default_nettype wire\n")
 }

@@ -14,7 +14,6 @@ use crate::plan::Plan;
 use crate::plan::streams::Intake;
 use crate::plan::words::status_bits;
 
-use super::instance::verilog;
 use super::template::design_module;
 use super::{EmitError, debug, registers};
 
@@ -54,7 +53,7 @@ fn context(plan: &Plan) -> Context {
         bank_words_bits,
         tare_command_bits => &calibration::tare_bits(plan.taxels()),
         // Of an ingress FIFO that drops frames, its parameters.
-        overrun => &streams.drops.then(|| verilog(&ingress_fifo::parameters(plan))),
+        overrun => &streams.drops.then(|| ingress_fifo::parameters(plan).verilog()),
         // Bits and bytes of a beat, 32-bit words of it, samples of it; bits of a sample and what it is.
         stream_bits => &streams.bits,
         stream_bytes => &(streams.bits / 8),
@@ -71,7 +70,7 @@ fn context(plan: &Plan) -> Context {
         samples_from => if unpack { "sample" } else { "in" },
         // Whether each frame has a scale of its own.
         scaled => &plan.scales_frames(),
-        context => &verilog(&frame_context::parameters(plan)),
+        context => &frame_context::parameters(plan).verilog(),
         // Thresholds of every frame, unless a calibration in RAM brings them: a taxel's noise, the least sum `|b|` of a
         // contact.
         noise => &format!("{LONG_BITS}'d{}", plan.thresholds.taxel),
@@ -111,20 +110,20 @@ fn context(plan: &Plan) -> Context {
         vector_bits => &(plan.channels() * hardware.data_bits as usize),
         u_values => &u_values(plan),
 
-        bz => &verilog(&bz::parameters(plan)),
-        cean => &verilog(&cean::parameters(plan)),
-        program_scheduler => &verilog(&program_scheduler::parameters(plan)),
-        array => &verilog(&array::parameters(plan)),
-        unfold => &verilog(&unfold::parameters(plan)),
-        we => &verilog(&we::parameters(plan)),
-        co => &verilog(&co::parameters(plan)),
+        bz => &bz::parameters(plan).verilog(),
+        cean => &cean::parameters(plan).verilog(),
+        program_scheduler => &program_scheduler::parameters(plan).verilog(),
+        array => &array::parameters(plan).verilog(),
+        unfold => &unfold::parameters(plan).verilog(),
+        we => &we::parameters(plan).verilog(),
+        co => &co::parameters(plan).verilog(),
         estimator_module => estimator_block.module(),
-        estimator_parameters => &verilog(&estimator),
+        estimator_parameters => &estimator.verilog(),
         field_module => field::module(plan),
-        field_parameters => &verilog(&field::parameters(plan)),
+        field_parameters => &field::parameters(plan).verilog(),
         // Of the contact counter, if there is one.
-        contacts => &design.algorithm.count_contacts.then(|| verilog(&contacts::parameters(plan))),
-        op => &verilog(&op::parameters(plan)),
+        contacts => &design.algorithm.count_contacts.then(|| contacts::parameters(plan).verilog()),
+        op => &op::parameters(plan).verilog(),
     }
 }
 

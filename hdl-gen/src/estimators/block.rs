@@ -152,19 +152,15 @@ pub trait EstimatorBlock {
         Vec::new()
     }
 
-    /// Pitch in x and y over the larger of the two with 16 fraction bits, if it needs the direction of the push.
+    /// Pitch in x and y over the larger of the two with 16 fraction bits, if it needs the direction of the push: then its
+    /// answer is one component and the line on which the other lies, rather than both components.
     fn pitch(&self) -> Option<[i64; 2]>;
-
-    /// Whether its answer is one component and the line on which the other lies, rather than both components.
-    fn answers_with_a_line(&self) -> bool;
 
     /// What `metadata.json` says of it.
     fn metadata(&self) -> Metadata;
 
-    /// What `sptfra inspect` says of it: a paragraph, or nothing.
-    fn report(&self, _design: &Design) -> String {
-        String::new()
-    }
+    /// What `sptfra inspect` says of it: a paragraph.
+    fn report(&self, design: &Design) -> String;
 
     /// What the load kernel of the design makes of a wide contact, and when the other one is better; further lines
     /// begin with `indent`.

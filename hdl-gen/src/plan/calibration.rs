@@ -9,15 +9,13 @@ pub use curve_map::CurveMap;
 pub use dead_map::DeadMap;
 
 use golden::design::{Calibration, CalibrationIn, Design};
-use serde::Serialize;
 
 use super::counts::OFFSET_FULL_SCALES;
 use super::curve_format::CurveFormat;
 use super::dead::DeadPlan;
 pub use super::gain::Reading;
-use super::gain::{GAIN_BITS, Gain, LARGEST_NUMBER, Scale};
+use super::gain::{GAIN_BITS, Gain, Scale};
 use super::{PlanError, Thresholds};
-use crate::cores::float_to_fixed;
 use crate::format::{Format, largest, pow2};
 
 /// How counts become stress where gains and offsets are written while frames run:
@@ -29,7 +27,7 @@ use crate::format::{Format, largest, pow2};
 ///
 /// Along a curve the banks' own makes values of counts before, in steps of `2^lsb` Pa, and
 /// `stress = round(value * mantissa * 2^(exponent + lsb) / 2^shift) + offset`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CalibrationPlan {
     /// Taxels of a frame.
     pub taxels: usize,
@@ -139,30 +137,11 @@ impl CalibrationPlan {
         Ok(bank)
     }
 
-    /// Whether a bank takes all of this.
-    pub fn takes(&self, bank: &Bank) -> bool {
-        let gain = |&(mantissa, exponent): &(i32, i32)| {
-            (1 << (GAIN_BITS - 2)..1 << (GAIN_BITS - 1)).contains(&mantissa.abs()) && (-512..512).contains(&exponent)
-        };
-        bank.gains.iter().all(gain)
-            && bank.offsets.iter().all(|&offset| i64::from(offset).abs() <= self.offset_limit)
-            && bank.contact > 0
-            && (1..1 << 26).contains(&bank.noise)
-            && bank.dead.fits(self.taxels)
-            && bank.curve.as_ref().is_none_or(CurveMap::fits)
-            && bank.curve.as_ref().map(|curve| curve.format) == self.curve()
-    }
-
     /// The stress of a taxel's count, given as float32.
     pub fn stress_of(&self, bank: &Bank, taxel: usize, count: u32) -> Reading {
-        let gain = bank.gains[taxel];
         let scale = Scale { shift: self.shift, full_scale: self.full_scale };
-        let lsb = bank.curve.as_ref().map(|curve| curve.format.lsb);
-        let number = match &bank.curve {
-            Some(curve) => curve.curve.value_of(count),
-            None => float_to_fixed::convert(count, gain.1, LARGEST_NUMBER as u32),
-        };
-        scale.reading(number, gain, bank.offsets[taxel].into(), lsb, self.stress.bound)
+        let curve = bank.curve.as_ref().map(|map| &map.curve);
+        scale.stress_of(count, curve, bank.gains[taxel], bank.offsets[taxel].into(), self.stress.bound)
     }
 
     /// Bits of the widest offset, sign included.
@@ -205,50 +184,6 @@ mod tests {
         let mut design = design();
         design.hardware.data_bits = data_bits;
         Plan::new(&design).unwrap().calibration.unwrap()
-    }
-
-    /// By every content: the full scale is read as such, what is below it is not, and no stress leaves its bounds.
-    #[test]
-    fn the_full_scale_is_reached_by_every_content() {
-        for plan in [plan(27), plan(22)] {
-            let gains = [1e-9, 3e-5, 0.7, 0.99999, 1.0, 1.00001, 15.9];
-            // In steps, within a full scale of either side: beyond, one end of the range cannot be read.
-            let shares = [0.0, 0.4, -0.4, 1.9, -1.9];
-            for (gain, share) in gains.iter().flat_map(|gain| shares.map(|share| (*gain, share))) {
-                let counts = plan.stress.bound as f64 / plan.count_steps;
-                let calibration = Calibration { gain: vec![gain; 12], offset: vec![share * counts; 12] };
-                let bank = plan.bank(&calibration, &plan.power_up).unwrap();
-                assert!(plan.takes(&bank));
-                let at = |part: f64| {
-                    let count = (part * counts - share * counts) / gain;
-                    plan.stress_of(&bank, 3, (count as f32).to_bits())
-                };
-                // A float32 of a count far from 0 is off by as much as a step of the stress and more.
-                for (part, saturated) in [(1.00001, true), (-1.00001, true), (0.9999, false), (-0.9999, false)] {
-                    let reading = at(part);
-                    assert_eq!(reading.saturated, saturated, "gain {gain}, offset {share}, {part}");
-                    assert!(reading.steps.abs() <= plan.stress.bound);
-                    let off = (reading.steps as f64 / plan.stress.bound as f64 - part).abs();
-                    assert!(off < 2e-5, "gain {gain}, offset {share}, {part}: {off}");
-                }
-            }
-        }
-    }
-
-    /// A taxel that the design replaces does not keep the others from a tare, whatever it reads.
-    #[test]
-    fn a_dead_taxel_is_at_rest() {
-        let mut design = design();
-        design.input.dead = vec![3];
-        let plan = Plan::new(&design).unwrap().calibration.unwrap();
-        let frames: Vec<Vec<u32>> = [1e9, -7.0]
-            .map(|stuck: f32| (0..12).map(|taxel| if taxel == 3 { stuck } else { 20.0 }.to_bits()).collect())
-            .to_vec();
-        let tared = plan.power_up.tared(&plan, &frames).expect("rest");
-        assert_eq!((tared.offsets[3], tared.offsets[2] != 0), (0, true));
-        design.input.dead.clear();
-        let plan = Plan::new(&design).unwrap().calibration.unwrap();
-        assert_eq!(plan.power_up.tared(&plan, &frames), None);
     }
 
     #[test]

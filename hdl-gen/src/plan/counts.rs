@@ -1,12 +1,10 @@
 //! Counts to pascals: what a raw sensor's values are multiplied by and what is added, in fixed point.
 
 use golden::design::{Design, Input};
-use serde::Serialize;
 
 use super::PlanError;
 use super::curve::CurvePlan;
-use super::gain::{GAIN_BITS, Gain, LARGEST_NUMBER, Reading, Scale};
-use crate::cores::float_to_fixed;
+use super::gain::{GAIN_BITS, Gain, Reading, Scale};
 use crate::format::{Format, pow2};
 
 /// Bits of the exponent at the float conversion.
@@ -21,7 +19,7 @@ const MOST_COARSE: f64 = 16.0;
 ///
 /// A taxel's gain is a mantissa of [`GAIN_BITS`] and an exponent. So every gain is as exact as the largest, and no
 /// taxel's steps depend on another's gain. The numbers are those of a calibration in RAM.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CountsPlan {
     /// The curve between the two, if the sensor is not linear: then
     /// `stress = round(curve(count) * gain * 2^(exponent + lsb) / 2^shift) + offset`.
@@ -82,12 +80,7 @@ impl CountsPlan {
         let index = self.index(taxel);
         let gain = (self.gains[index], self.exponents[index]);
         let scale = Scale { shift: self.shift, full_scale: self.full_scale };
-        let lsb = self.curve.as_ref().map(|curve| curve.lsb);
-        let number = match &self.curve {
-            Some(curve) => curve.value_of(count),
-            None => float_to_fixed::convert(count, gain.1, LARGEST_NUMBER as u32),
-        };
-        scale.reading(number, gain, self.offsets[index], lsb, stress.bound)
+        scale.stress_of(count, self.curve.as_ref(), gain, self.offsets[index], stress.bound)
     }
 
     /// The place of a taxel's constants.

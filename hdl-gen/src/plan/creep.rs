@@ -1,7 +1,6 @@
 //! Creep: how it is removed, in integers.
 
 use golden::design::Design;
-use serde::Serialize;
 
 use super::factor::{Factor, WITH_FRACTION};
 use crate::cores::LONG_BITS;
@@ -17,7 +16,7 @@ pub const WORD_BITS: u32 = LONG_BITS + FRACTION;
 const NONE: i64 = 1 << (FRACTION - 1);
 
 /// What removes creep.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CreepPlan {
     /// Creep in the end over the stress.
     pub strength: Factor,

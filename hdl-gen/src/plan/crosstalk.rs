@@ -1,7 +1,6 @@
 //! Crosstalk: the shares of sums that are taken from each taxel, in fixed point.
 
 use golden::design::Design;
-use serde::Serialize;
 
 use crate::cores::SHORT_BITS;
 use crate::format::{Format, largest, pow2, round_shift};
@@ -13,7 +12,7 @@ pub const PARAMETER_BITS: u32 = 6 + 3 * FACTOR_BITS;
 
 /// What removes crosstalk: `stress - term(row) - (term(column) - term(frame))`, clipped to the full scale, where a term is
 /// `round(factor * floor(sum / 2^shift) / 2^fraction)`.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CrosstalkPlan {
     /// Factors of the sums of a row, of a column and of the frame.
     pub factors: [i32; 3],
@@ -21,7 +20,6 @@ pub struct CrosstalkPlan {
     pub fraction: u32,
     /// Bits that are dropped of the sum of a row or a column, and of the frame.
     pub shifts: [u32; 2],
-    #[serde(skip)]
     columns: usize,
 }
 

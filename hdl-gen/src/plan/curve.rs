@@ -1,7 +1,6 @@
 //! The curve from counts to pascals, in fixed point: the segment of a count, then a straight line.
 
 use golden::design::{Curve, Design};
-use serde::Serialize;
 
 use super::PlanError;
 use super::curve_format::CurveFormat;
@@ -22,7 +21,7 @@ pub const SEGMENT_BITS: u32 = LONG_BITS + VALUE_BITS + GAIN_BITS + SHIFT_BITS;
 pub const SHIFT_BITS: u32 = 6;
 
 /// One straight piece: `value + round(slope * (number - first) / 2^shift)`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
     /// The number with which it begins.
     pub first: i64,
@@ -35,7 +34,7 @@ pub struct Segment {
 }
 
 /// The curve of one design.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CurvePlan {
     /// Exponent of the numbers: `number = round(count * 2^exponent)`.
     pub exponent: i32,

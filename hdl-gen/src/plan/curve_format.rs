@@ -1,7 +1,6 @@
 //! Formats of the numbers along a curve from counts to pascals.
 
 use golden::design::{Curve, Design, Samples};
-use serde::Serialize;
 
 use crate::cores::LONG_BITS;
 use crate::format::{Format, largest};
@@ -21,7 +20,7 @@ pub const SEGMENT_WORDS: usize = 4;
 const END_WORDS: usize = 3;
 
 /// The numbers of a design's curves: what every curve in a bank has in common.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CurveFormat {
     /// Segments for which a bank has room, a power of two.
     pub room: usize,

@@ -2,7 +2,6 @@
 
 use golden::dead_taxels::DeadTaxels;
 use golden::design::Design;
-use serde::Serialize;
 
 use crate::cores::SHORT_BITS;
 use crate::format::{Format, largest, pow2, round_shift};
@@ -15,7 +14,7 @@ pub const MOST_WEIGHT: i64 = (1 << 21) - 1;
 pub const GUESSED_SHARE: i64 = (1.0 / golden::dead_taxels::GUESSED) as i64;
 
 /// What takes the place of dead taxels' readings: `round(sum of weight * stress / 2^shift)`, clipped to the full scale.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeadPlan {
     /// The dead taxels, in ascending order.
     pub taxels: Vec<usize>,

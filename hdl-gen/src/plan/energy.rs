@@ -46,9 +46,8 @@ impl Energy {
         let (resources, cycles) = (&plan.resources, plan.timeline.interval_cycles);
         let lanes =
             resources.blocks.iter().find(|block| block.modules.contains(&LANES)).map_or(0, |block| block.multipliers);
-        let macs: u64 = plan.schedule.windows.iter().map(|window| window.macs).sum();
         let width: u64 = resources.memories.iter().map(|memory| memory.count as u64 * u64::from(memory.width)).sum();
-        let lane_products = macs * plan.channels() as u64;
+        let lane_products = plan.macs();
         let other_products = (resources.multipliers - lanes) as u64 * cycles;
         let memory_bits = width * cycles;
         let hardware = &plan.design.hardware;

@@ -1,7 +1,5 @@
 //! Factors in fixed point, for one multiplier.
 
-use serde::Serialize;
-
 use crate::cores::SHORT_BITS;
 use crate::format::{largest, pow2};
 
@@ -11,7 +9,7 @@ const FACTOR_BITS: u32 = SHORT_BITS - 1;
 pub const WITH_FRACTION: u32 = 6 + FACTOR_BITS;
 
 /// A factor with its fraction bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Factor {
     /// In steps of `2^-fraction`.
     pub factor: i64,

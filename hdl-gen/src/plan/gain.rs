@@ -1,7 +1,7 @@
 //! Gains in fixed point: a multiplier's shorter operand, an exponent, and what both make of a count.
 
-use crate::cores::float_to_fixed::Converted;
-use crate::cores::{LONG_BITS, SHORT_BITS};
+use super::curve::CurvePlan;
+use crate::cores::{LONG_BITS, SHORT_BITS, float_to_fixed};
 use crate::format::{Format, largest, pow2, round_shift};
 
 /// Width of a gain's mantissa: the shorter operand of a multiplier.
@@ -78,18 +78,21 @@ impl Scale {
         Some(Self { shift, full_scale: (stress.bound - rounding).max(1) })
     }
 
-    /// The stress of a number by a gain's mantissa and an offset. Behind a curve, whose values have an exponent that is
-    /// `curve`, the gain's exponent is a shift.
-    pub(super) fn reading(
+    /// The stress of a count, given as float32, by a gain's mantissa and exponent and an offset. Behind a curve the exponent
+    /// is a shift.
+    pub(super) fn stress_of(
         self,
-        number: Converted,
+        count: u32,
+        curve: Option<&CurvePlan>,
         (mantissa, exponent): (i32, i32),
         offset: i64,
-        curve: Option<i32>,
         bound: i64,
     ) -> Reading {
         let shift = self.shift as i32;
-        let drop = curve.map_or(shift, |lsb| (shift - lsb - exponent).clamp(0, MOST_DROP));
+        let (number, drop) = match curve {
+            Some(curve) => (curve.value_of(count), (shift - curve.lsb - exponent).clamp(0, MOST_DROP)),
+            None => (float_to_fixed::convert(count, exponent, LARGEST_NUMBER as u32), shift),
+        };
         let steps = round_shift(i64::from(number.fixed) * i64::from(mantissa), drop as u32) + offset;
         let clipped = steps.abs() >= self.full_scale;
         let steps = if clipped { steps.signum() * bound } else { steps };

@@ -73,11 +73,6 @@ impl OperandLayout {
         if self.residuals > 1 { self.fixed.len() * self.elements } else { 0 }
     }
 
-    /// Elements of a vector.
-    pub fn elements(&self) -> usize {
-        self.elements
-    }
-
     /// Words of each PE's operand memory.
     pub fn words(&self) -> usize {
         (2 + self.fixed.len() + (self.residuals - 1) * RESIDUAL.len()) * self.elements

@@ -192,10 +192,7 @@ impl Plan {
 
     /// Words of the field in an output frame: 3 m, or none.
     pub fn field_words(&self) -> usize {
-        match self.design.algorithm.outputs {
-            Outputs::Field => 3 * self.taxels(),
-            Outputs::Resultants => 0,
-        }
+        self.words_out() - SUMMARY_WORDS
     }
 
     /// Whether the core computes the field.

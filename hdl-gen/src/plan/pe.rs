@@ -1,7 +1,5 @@
 //! What a PE works through, and the results that it leaves.
 
-use serde::Serialize;
-
 use super::matrix::Entry;
 
 /// Results that a PE holds until the collector comes.
@@ -10,7 +8,7 @@ pub const RESULT_BUFFERS: usize = 2;
 pub const MAX_SEGMENT: u32 = (1 << 14) - 1;
 
 /// What a PE does with the sum of a segment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SegmentKind {
     /// A whole row: its sum is a result.
     Row = 0,
@@ -23,7 +21,7 @@ pub enum SegmentKind {
 }
 
 /// A run of consecutive MACs of one row in one PE.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
     /// What happens to the sum.
     pub kind: SegmentKind,
@@ -41,7 +39,7 @@ pub struct PeProgram {
 }
 
 /// The collector takes a result from a PE.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WriteBackSlot {
     /// Cycle, counted from the first issue of the program.
     pub cycle: u64,

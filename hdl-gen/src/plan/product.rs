@@ -3,9 +3,7 @@
 use std::ops::Deref;
 
 pub use golden::parity::mirror;
-use golden::parity::{COMPONENTS, swapped};
 pub use golden::products::{Coefficients, Epilogue, Step, Vector};
-use serde::Serialize;
 
 use super::matrix::{Entry, QuantisedMatrix};
 use crate::format::{FEWEST_ELEMENTS, round_shift};
@@ -36,7 +34,7 @@ pub const fn destination_bits(field: bool) -> u32 {
 pub const DESTINATIONS: usize = 16;
 
 /// The block that owns the lanes while a product runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Block {
     /// Weights.
     We,
@@ -63,7 +61,7 @@ pub fn take_to_operand(epilogue: Epilogue) -> u64 {
 }
 
 /// Rows in front of a product's own, whose results are sums over the frame and go to Co.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Preload {
     /// Index of the stored matrix.
     pub matrix: usize,
@@ -98,7 +96,7 @@ pub fn sum_channel(p: usize, q: usize) -> usize {
 
 /// A step of the list in hardware; it reads as its step. The stored matrix is one of [`super::Plan::matrices`], and its
 /// operands stand next to each other in the operand memory: column `k n + i` is element i of vector k.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Product {
     /// What it computes.
     pub step: Step,
@@ -125,13 +123,6 @@ impl Product {
     pub fn result_bound(matrix: &QuantisedMatrix, operand_bound: i64, shift: u32) -> i64 {
         // An accumulator has 48 bits: beyond that, and well within the 64 of this word, nothing is left.
         round_shift(matrix.largest_sum(operand_bound) as i64, shift.min(62))
-    }
-
-    /// For each component of the result, the channel that computes it.
-    pub fn channels(&self) -> [usize; COMPONENTS] {
-        std::array::from_fn(
-            |component| if self.mirrored.is_some() { swapped(component) } else { component } ^ self.parity,
-        )
     }
 
     /// Gives the rows of the stored matrix the numbers that their results have.

@@ -11,16 +11,14 @@
 //! frame, and so are resultants alone; a field that the PEs put together takes two more. The hardware starts a program
 //! when its data and the PEs are there.
 
-use serde::Serialize;
-
-use super::matrix::{Entry, QuantisedMatrix};
+use super::matrix::QuantisedMatrix;
 use super::partition::{Partitioner, Stream, Timing};
 pub use super::pe::{MAX_SEGMENT, PeProgram, RESULT_BUFFERS, Segment, SegmentKind, WriteBackSlot};
 use super::product::{Epilogue, Product, Vector, mirror, spacing, take_to_operand};
 use crate::timing::latency::{PROGRAM_GAP, collector_jump};
 
 /// When a product runs, in cycles from the first issue of its program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
     /// First issue cycle.
     pub start: u64,
@@ -56,7 +54,7 @@ pub struct Program {
 }
 
 /// The PEs' work for one frame.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Schedule {
     /// Per PE.
     pub pes: Vec<PeProgram>,
@@ -83,17 +81,33 @@ impl Schedule {
             let (word, segment, slot) = partitioner.begin();
             let mut made: Vec<Made> = Vec::new();
             let mut next_start = 0;
-            for (offset, product) in chunk.iter().enumerate() {
+            for (index, product) in (first as u32..).zip(chunk) {
                 let main = &matrices[product.matrix];
                 let preload = product.preload.as_ref().map(|preload| &matrices[preload.matrix]);
-                let new = |matrix: usize| !std::mem::replace(&mut stored[matrix], true);
-                let index = (first + offset) as u32;
-                let distribution =
-                    Distribution { product, index, preload, main, start: next_start.max(addend(product, &made)) };
+                let mut rows = Stream::rows_of(preload, main);
+                product.relabel(&mut rows);
+                let macs = rows.iter().map(|(_, entries)| entries.len() as u64).sum();
+                let stream = Stream {
+                    product: index,
+                    matrix: product.matrix,
+                    rows,
+                    store: !std::mem::replace(&mut stored[product.matrix], true),
+                    start: next_start.max(addend(product, &made)),
+                    spacing: spacing(product.epilogue),
+                };
+                // It starts while the operand is still being made, if its MACs find what they need.
+                let find = |operand: &Vector| made.iter().find(|made| made.result.holds(*operand));
+                let sources: Vec<Option<&Made>> = product.operands.iter().map(find).collect();
+                let size = main.rows.len();
+                let readable = |column: u32| {
+                    let (operand, element) = (column as usize / size, column as usize % size);
+                    let element = product.mirrored.map_or(element, |side| mirror(element, side));
+                    sources[operand].map_or(0, |made| made.readable[element])
+                };
                 let first_slot = partitioner.slots.len();
-                let (Timing { start, length, last_slot }, macs) = distribution.partition(&mut partitioner, &made, new);
+                let Timing { start, length, last_slot } = partitioner.partition(&stream, &readable);
                 windows.push(Window { start, length, wait: start - next_start, macs });
-                made.push(Made::new(product, main.rows.len(), &partitioner.slots[first_slot..], last_slot));
+                made.push(Made::new(product, size, &partitioner.slots[first_slot..], last_slot));
                 next_start = start + length;
             }
             let cycles = |slot: Option<&WriteBackSlot>| slot.map_or(0, |slot| slot.cycle);
@@ -136,45 +150,6 @@ impl Schedule {
     pub fn busy_fraction(&self) -> f64 {
         let macs: u64 = self.windows.iter().map(|window| window.macs).sum();
         macs as f64 / (self.issue_cycles() * self.pes.len() as u64) as f64
-    }
-}
-
-/// A product to be distributed over the PEs.
-struct Distribution<'a> {
-    product: &'a Product,
-    index: u32,
-    preload: Option<&'a QuantisedMatrix>,
-    main: &'a QuantisedMatrix,
-    start: u64,
-}
-
-impl<'a> Distribution<'a> {
-    fn stream(&self, mut rows: Vec<(u32, &'a [Entry])>, store: bool, start: u64) -> Stream<'a> {
-        let Self { product, index, .. } = *self;
-        product.relabel(&mut rows);
-        let spacing = spacing(product.epilogue);
-        Stream { product: index, matrix: product.matrix, rows, store, start, spacing }
-    }
-
-    /// Starts while the operand is still being made, if its MACs find what they need. Returns its MACs, too.
-    fn partition(
-        &self,
-        partitioner: &mut Partitioner,
-        made: &[Made],
-        mut new: impl FnMut(usize) -> bool,
-    ) -> (Timing, u64) {
-        let rows = Stream::rows_of(self.preload, self.main);
-        let macs = rows.iter().map(|(_, entries)| entries.len() as u64).sum();
-        let sources: Vec<Option<&Made>> =
-            self.product.operands.iter().map(|&operand| made.iter().find(|made| made.result.holds(operand))).collect();
-        let size = self.main.rows.len();
-        let readable = |column: u32| {
-            let (operand, element) = (column as usize / size, column as usize % size);
-            let element = self.product.mirrored.map_or(element, |side| mirror(element, side));
-            sources[operand].map_or(0, |made| made.readable[element])
-        };
-        let stream = self.stream(rows, new(self.product.matrix), self.start);
-        (partitioner.partition(&stream, &readable), macs)
     }
 }
 

@@ -2,7 +2,6 @@
 
 use golden::design::Design;
 use golden::smoothing::RESTART;
-use serde::Serialize;
 
 use super::factor::{Factor, WITH_FRACTION};
 use crate::cores::LONG_BITS;
@@ -22,7 +21,7 @@ pub const PARAMETER_BITS: u32 = LONG_BITS + WITH_FRACTION;
 pub const WORD_BITS: u32 = LONG_BITS + LONG_BITS + FRACTION;
 
 /// How frames are averaged.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SmoothingPlan {
     /// The weight of a frame is `2^-rate`, unless a register says otherwise.
     pub rate: u32,

@@ -2,7 +2,6 @@
 
 use golden::products::Vector;
 use golden::sensor::Sensor;
-use serde::Serialize;
 
 use crate::format::{FRICTION_FRACTION, Format, pow2};
 
@@ -10,7 +9,7 @@ use crate::format::{FRICTION_FRACTION, Format, pow2};
 pub const FOLD_BITS: u32 = 2;
 
 /// Formats of the taxels' values in the four kinds of vectors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Formats {
     /// `b_z` in Pa; its bound is the full scale, to which larger inputs are clamped.
     pub stress: Format,
@@ -24,7 +23,6 @@ pub struct Formats {
     /// `u_q` in Pa.
     pub u: Format,
     /// Reduced plan: formats of the folded vectors.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub folded: Option<FoldedFormats>,
 }
 
@@ -60,7 +58,7 @@ pub fn arms(sensor: &Sensor) -> Vec<[i32; 2]> {
 }
 
 /// Formats of the folded vectors; those of the taxels' values are in [`Formats`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FoldedFormats {
     /// Folded stress, in Pa.
     pub stress: Format,

@@ -9,6 +9,7 @@ use memory::Memory;
 
 /// What a block of the hardware takes.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct BlockCost {
     /// What the block is called.
     pub name: &'static str,
@@ -29,13 +30,11 @@ impl BlockCost {
     }
 
     /// The same where so many of its multipliers have short operands.
-    #[must_use]
     pub fn narrow(self, narrow: usize) -> Self {
         Self { narrow, ..self }
     }
 
     /// The same with memories.
-    #[must_use]
     pub fn with(mut self, memories: impl IntoIterator<Item = Memory>) -> Self {
         self.memories.extend(memories.into_iter().map(|memory| Memory { block: self.name, ..memory }));
         self
@@ -59,15 +58,13 @@ pub struct BlockResources {
 }
 
 /// Predicted resources of a design.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Resources {
     /// DSP blocks of the part.
     pub dsp: usize,
     /// Which those are.
-    #[serde(skip)]
     pub dsp_block: DspBlock,
     /// Multipliers, whatever the part makes of them.
-    #[serde(skip)]
     pub multipliers: usize,
     /// RAMB36; a RAMB18 counts one half.
     pub bram36: f64,

@@ -1,7 +1,5 @@
 //! The predicted times of a design, exact: each is compared with simulation. [`super::control`] finds them.
 
-use serde::Serialize;
-
 /// Frames back to back that show the interval: from before the middle on every buffer is full, and there is still a next
 /// frame.
 pub const INTERVAL_FRAMES: usize = 24;
@@ -43,7 +41,7 @@ fn mean(distances: &[u64]) -> u64 {
 }
 
 /// Predicted times of one design, in clock cycles.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Timeline {
     /// First beat in to last beat out of a single frame, both included, with streams that never wait.
     pub latency_cycles: u64,

@@ -1,6 +1,7 @@
 //! Tests of the generator through its public interface, one module a topic.
 
 mod columns;
+mod constants;
 mod counts;
 mod emission;
 mod energy;

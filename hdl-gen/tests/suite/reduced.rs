@@ -80,7 +80,10 @@ fn through_the_lanes(orbits: &Orbits, product: &Product, matrix: QuantisedMatrix
             Some(side) => folded(swapped(channel), mirror(orbit, side)),
         })
     });
-    unfolded(orbits, |orbit| product.channels().map(|channel| sums[&(0, orbit as u32)][channel]))
+    // For each component of the result, the channel that computes it.
+    let channel =
+        |component: usize| if product.mirrored.is_some() { swapped(component) } else { component } ^ product.parity;
+    unfolded(orbits, |orbit| std::array::from_fn(|component| sums[&(0, orbit as u32)][channel(component)]))
 }
 
 /// The values at the taxels, from the components of each orbit.

@@ -119,7 +119,7 @@ fn accuracy(page: &mut String, report: &Report) {
         }
     }
     let counts = report.status_counts.present();
-    let rows = counts.into_iter().map(|(name, count)| row(name, [grouped(count as u64)]));
+    let rows = counts.into_iter().map(|(name, count)| row(&name, [grouped(count as u64)]));
     section(page, "Frames by status", &["frames"], rows);
 }
 

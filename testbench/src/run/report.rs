@@ -192,11 +192,6 @@ impl Report {
             simulator,
         }
     }
-
-    /// Whether every word is the model's, the cycles are right, and every register has the value that it should have.
-    pub fn is_right(&self) -> bool {
-        self.faults.is_empty()
-    }
 }
 
 /// One line on what the design is.

@@ -53,6 +53,7 @@ pub struct Reset {
 
 /// What to do to a core.
 #[derive(Clone, Debug)]
+#[must_use]
 pub struct Traffic<'a> {
     /// Packets in, TLAST on the last word of each; empty ones are skipped.
     pub packets: &'a [Vec<u32>],
@@ -89,25 +90,21 @@ impl<'a> Traffic<'a> {
     }
 
     /// With the pauses of a mode.
-    #[must_use]
     pub fn with_mode(self, mode: &Mode) -> Self {
         Self { source: mode.source, sink: mode.sink, ..self }
     }
 
     /// With another pacing.
-    #[must_use]
     pub fn with_pacing(self, pacing: Pacing) -> Self {
         Self { pacing, ..self }
     }
 
     /// To a core that drops what it has no room for.
-    #[must_use]
     pub fn with_drops(self) -> Self {
         Self { drops: true, ..self }
     }
 
     /// With resets.
-    #[must_use]
     pub fn with_resets(self, resets: &'a [Reset]) -> Self {
         Self { resets, ..self }
     }
@@ -170,13 +167,6 @@ impl Outcome {
     pub fn interval(&self) -> Option<u64> {
         let ends: Vec<u64> = self.exchanges.iter().map(|exchange| exchange.last_out).collect();
         (ends.len() > 1).then(|| timing::mean_interval(&ends))
-    }
-
-    /// Mean distance between the ends of the packets, to the nearest cycle.
-    pub fn mean_interval(&self) -> Option<u64> {
-        let [first, .., last] = self.exchanges.as_slice() else { return None };
-        let distances = self.exchanges.len() as u64 - 1;
-        Some((last.last_out - first.last_out + distances / 2) / distances)
     }
 }
 

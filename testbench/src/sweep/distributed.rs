@@ -8,6 +8,7 @@ use golden::frames::write_frames;
 use golden::metrics::ErrorSummary;
 use golden::output::write_whole;
 use hdl_gen::plan::Plan;
+use hdl_gen::write::io_error;
 use rayon::prelude::*;
 use serde::Deserialize;
 
@@ -94,7 +95,7 @@ impl Sweep {
 }
 
 fn write_job(job: &Job, scene: &SweepScene, folder: &Path) -> Result<(), SweepError> {
-    fs::create_dir_all(folder).map_err(SweepError::io("make the folder", folder))?;
+    fs::create_dir_all(folder).map_err(io_error(folder, "make the folder"))?;
     let frames = folder.join("frames.csv");
     write_reference(&reference_path(&frames), &scene.made)?;
     write_frames(&frames, &scene.frames.clone().as_delivered(&job.design).stress)?;

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use golden::design::Design;
 use golden::filter::nnz_of;
 use golden::matrices::MatrixName;
-use golden::metrics::{ErrorSummary, Outcome};
+use golden::metrics::Outcome;
 use golden::solver::{Solution, Solver};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::streams::Streams;
@@ -90,7 +90,7 @@ pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Poin
         dsp: plan.resources.dsp,
         bram36: plan.resources.bram36,
         rom_bits: plan.resources.rom_bits,
-        macs: plan.schedule.windows.iter().map(|window| window.macs * plan.channels() as u64).sum(),
+        macs: plan.macs(),
     });
     Ok(point)
 }
@@ -103,8 +103,7 @@ fn described(job: &Job, scene: &SweepScene, solver: &Solver, solutions: &[Soluti
         let kept = algorithm.filter.of(name).map_or(0, |filter| nnz_of(solver.matrices(), name, filter));
         (name.to_string(), kept)
     });
-    let pairs: Vec<(Outcome, Outcome)> = truth.iter().copied().zip(solutions.iter().map(Outcome::from)).collect();
-    let errors = ErrorSummary::new(&pairs);
+    let errors = against_truth(solutions, truth);
     Point {
         key: job.key.clone(),
         sensor: sensor.clone(),

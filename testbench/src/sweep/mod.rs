@@ -18,6 +18,7 @@ use golden::design::{DesignError, Sensor, text_of};
 use golden::frames::FrameError;
 use golden::output::OutputError;
 use golden::scene::{Contact, Kind, Scene, SceneError, SceneFrame, Shear};
+use hdl_gen::write::WriteError;
 use rayon::prelude::*;
 use serde::Deserialize;
 
@@ -51,15 +52,8 @@ pub enum SweepError {
     #[error(transparent)]
     Write(#[from] OutputError),
     /// A file or folder cannot be used.
-    #[error("{}: cannot {action}: {source}; choose another folder with --out", path.display())]
-    Io {
-        /// What was tried.
-        action: &'static str,
-        /// On what.
-        path: PathBuf,
-        /// Why not.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Folder(#[from] WriteError),
     /// What is wrong with a point, a scene or a file.
     #[error("{label}: {source}")]
     At {
@@ -71,12 +65,6 @@ pub enum SweepError {
 }
 
 impl SweepError {
-    /// An error of a file or folder.
-    pub fn io(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
-        let path = path.to_owned();
-        move |source| Self::Io { action, path, source }
-    }
-
     fn at(label: impl Into<String>, source: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         Self::At { label: label.into(), source: source.into() }
     }

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use golden::output::write_whole;
+use hdl_gen::write::io_error;
 
 use super::SweepError;
 use super::point::{Point, Verified};
@@ -21,10 +22,10 @@ impl Store {
     /// The store in the folder of a sweep, made if it is not there.
     ///
     /// # Errors
-    /// [`SweepError::Io`] if it cannot be made.
+    /// [`SweepError::Folder`] if it cannot be made.
     pub fn open(folder: &Path) -> Result<Self, SweepError> {
         let folder = folder.join(POINTS);
-        fs::create_dir_all(&folder).map_err(SweepError::io("make the folder", &folder))?;
+        fs::create_dir_all(&folder).map_err(io_error(&folder, "make the folder"))?;
         Ok(Self { folder })
     }
 
@@ -53,10 +54,10 @@ impl Store {
     /// Reads a point.
     ///
     /// # Errors
-    /// [`SweepError::Io`] and [`SweepError::At`] with the file.
+    /// [`SweepError::Folder`] and [`SweepError::At`] with the file.
     pub fn get(&self, key: &str) -> Result<Point, SweepError> {
         let path = self.path(key);
-        let bytes = fs::read(&path).map_err(SweepError::io("read the point", &path))?;
+        let bytes = fs::read(&path).map_err(io_error(&path, "read the point"))?;
         serde_json::from_slice(&bytes).map_err(|error| SweepError::at(path.display().to_string(), error))
     }
 }

@@ -6,9 +6,10 @@ use serde::Serialize;
 
 use super::{BenchError, Scope, median};
 use golden::progress::Progress;
-use testbench::co_simulation::{self, CoSimulationError, planned};
+use testbench::co_simulation::{self, CoSimulationError, pacing, planned, timeout};
 use testbench::frame_set::FrameSet;
-use testbench::stream::Pacing;
+use testbench::simulate::SimulationError;
+use testbench::stream::{Traffic, exchange};
 use testbench::stream_words::packets;
 
 /// Repetitions behind a median.
@@ -53,7 +54,9 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Rate>, B
         let mut run = |count: usize| -> Result<(u64, f64), BenchError> {
             let packets: Vec<Vec<u32>> = packets.iter().cycle().take(count).cloned().collect();
             let start = Instant::now();
-            let outcome = co_simulation::send(&mut core, &plan, &packets, Pacing::BackToBack)?;
+            let traffic = Traffic::new(&packets, timeout(&plan)).with_pacing(pacing(&plan));
+            let outcome = exchange(&mut core, &traffic, |_| ())
+                .map_err(|source| CoSimulationError::from(SimulationError::Stream { mode: "free-running", source }))?;
             Ok((outcome.cycles, start.elapsed().as_secs_f64()))
         };
         let (_, seconds) = run(FIRST_FRAMES)?;

@@ -221,7 +221,6 @@ fn judged(
     let full_scale = case.design.hardware.full_scale_pa;
     let mut backward = answered().map(|(answer, frame)| backward_error(solver.matrices(), answer, frame, full_scale));
     let silent = answers.iter().zip(frames).filter(|(answer, frame)| is_silent(case, answer, frame)).count();
-    let status = StatusCounts::new(answers).present();
     Judged {
         tangential: errors.map(|errors| errors.e_fx.max.max(errors.e_fy.max)),
         normal: errors.map(|errors| errors.e_fz.max),
@@ -229,7 +228,7 @@ fn judged(
         at_its_friction: largest(&mut at_its_friction),
         backward: largest(&mut backward),
         silent,
-        status: status.into_iter().map(|(name, count)| (name.to_owned(), count)).collect(),
+        status: StatusCounts::new(answers).present(),
     }
 }
 

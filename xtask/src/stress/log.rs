@@ -8,6 +8,7 @@ use hdl_gen::plan::calibration::Bank;
 use hdl_gen::plan::words::COUNTERS;
 use serde::Serialize;
 
+use super::random_banks::tared;
 use testbench::stream::{Exchange, Outcome};
 
 /// Packets before the first one with its offsets among which the frames of a tare are looked for.
@@ -147,7 +148,7 @@ impl<'a> Banks<'a> {
             let samples = |&packet: &usize| {
                 streams.samples_of(self.packets[packet].iter().copied()).take(of.taxels).collect::<Vec<u32>>()
             };
-            let bank = self.bank.as_ref()?.tared(of, &given.iter().map(samples).collect::<Vec<_>>())?;
+            let bank = tared(self.bank.as_ref()?, of, &given.iter().map(samples).collect::<Vec<_>>())?;
             return (bank.crc() == crc).then_some(bank);
         }
         let drops = self.plan.streams().drops;
@@ -183,7 +184,7 @@ mod tests {
             [3.0_f32, 900.0, 40.0, 41.0, 2.0, 80.0].map(|count| vec![count.to_bits(); 4]).to_vec();
         // By its noise floor a count more or less is rest.
         let other = Bank { contact: 99, noise: 1 << 20, ..of.power_up.clone() };
-        let tared = other.tared(of, &packets[2..4]).unwrap();
+        let tared = tared(&other, of, &packets[2..4]).unwrap();
         let mut model = Model::new(&plan);
         let mut exchanges = Vec::new();
         for (packet, words) in packets.iter().enumerate() {

@@ -12,6 +12,8 @@ mod judge;
 mod log;
 mod packets;
 mod processor;
+#[path = "../../../testbench/tests/suite/support/banks.rs"]
+mod random_banks;
 
 use std::fmt;
 

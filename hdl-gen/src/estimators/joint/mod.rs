@@ -184,10 +184,6 @@ impl EstimatorBlock for JointPlan {
         None
     }
 
-    fn answers_with_a_line(&self) -> bool {
-        false
-    }
-
     fn metadata(&self) -> Metadata {
         Metadata {
             search: json!({ "side": self.search.side, "parallel": self.search.parallel }),

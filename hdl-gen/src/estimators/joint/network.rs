@@ -135,11 +135,6 @@ impl NetworkPlan {
         }
     }
 
-    /// Places of a quarter of the window, its middle row and column with it.
-    pub fn places(&self) -> usize {
-        (self.half_window[0] + 1) * (self.half_window[1] + 1)
-    }
-
     /// Hidden units, those included that fill up the last pass.
     pub fn units(&self) -> usize {
         self.passes * self.at_once

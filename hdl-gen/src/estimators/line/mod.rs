@@ -120,10 +120,6 @@ impl EstimatorBlock for LinePlan {
         Some(self.pitch)
     }
 
-    fn answers_with_a_line(&self) -> bool {
-        true
-    }
-
     fn metadata(&self) -> Metadata {
         let Cells { cells, elements } = self.cells;
         Metadata {

@@ -1,15 +1,12 @@
-//! What a bank holds, its words and their CRC, and what a tare makes of it.
+//! What a bank holds, its words and their CRC.
 
-use serde::Serialize;
-
-use super::{CalibrationPlan, CurveMap, DeadMap, Reading};
-use crate::format::round_shift;
+use super::{CurveMap, DeadMap};
 use crate::plan::gain::GAIN_BITS;
 
 /// Bits of a gain in its word: mantissa, then the exponent of the counts.
 const EXPONENT_MASK: u32 = (1 << crate::plan::counts::EXPONENT_BITS) - 1;
 /// What a bank holds, in numbers of the hardware.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bank {
     /// Mantissa and exponent of each taxel's gain.
     pub gains: Vec<(i32, i32)>,
@@ -23,7 +20,6 @@ pub struct Bank {
     /// Taxels that are replaced.
     pub dead: DeadMap,
     /// The curve of the counts, where the design has one.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub curve: Option<CurveMap>,
 }
 
@@ -49,29 +45,6 @@ impl Bank {
         let bit = |crc: u32, _| crc >> 1 ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 };
         let byte = |crc: u32, byte: u8| (0..8).fold(crc ^ u32::from(byte), bit);
         !self.words().into_iter().flat_map(u32::to_le_bytes).fold(u32::MAX, byte)
-    }
-
-    /// What a tare makes of a bank: offsets less the mean of each taxel's stress in the frames, a power of two of them.
-    /// None if they do not look like rest, or an offset leaves its bounds.
-    pub fn tared(&self, plan: &CalibrationPlan, frames: &[Vec<u32>]) -> Option<Self> {
-        let log2 = frames.len().trailing_zeros();
-        let mut tared = self.clone();
-        for taxel in 0..self.offsets.len() {
-            let readings: Vec<Reading> = frames.iter().map(|frame| plan.stress_of(self, taxel, frame[taxel])).collect();
-            if readings.iter().any(|reading| reading.saturated || reading.not_finite) {
-                return None;
-            }
-            let steps = || readings.iter().map(|reading| reading.steps);
-            if steps().max()? - steps().min()? > i64::from(self.noise) {
-                return None;
-            }
-            let offset = i64::from(self.offsets[taxel]) - round_shift(steps().sum(), log2);
-            if offset.abs() > plan.offset_limit {
-                return None;
-            }
-            tared.offsets[taxel] = offset as i32;
-        }
-        Some(tared)
     }
 }
 

@@ -1,7 +1,6 @@
 //! What a bank says of the curve from counts to pascals: its segments, in as many places as there is room.
 
 use golden::design::Curve;
-use serde::Serialize;
 
 use crate::format::{largest, pow2, round_shift};
 use crate::plan::PlanError;
@@ -15,7 +14,7 @@ pub const MOST_NUMBER: i64 = largest(COUNT_BITS);
 const SLOPE_SHARE: u32 = 16;
 
 /// A curve as a bank holds it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CurveMap {
     /// See [`CurveFormat`].
     pub format: CurveFormat,

@@ -1,12 +1,9 @@
 //! What a bank says of dead taxels: which they are and the weights of the others, in as many places as there is room.
 
-use serde::Serialize;
-
-use crate::format::largest;
-use crate::plan::dead::{DeadPlan, MOST_WEIGHT, WEIGHT_BITS};
+use crate::plan::dead::DeadPlan;
 
 /// A map of dead taxels, with the room that it has in a bank.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeadMap {
     /// Dead taxels for which there is room; 0: banks say nothing of them.
     pub room: usize,
@@ -42,19 +39,5 @@ impl DeadMap {
         }
         let weights = (0..taxels).flat_map(|taxel| (0..self.room).map(move |place| self.weight(place, taxel)));
         std::iter::once(self.head()).chain(self.numbers()).chain(weights.map(i32::cast_unsigned)).collect()
-    }
-
-    /// Whether a bank takes it: numbers that ascend and are those of taxels, weights within their width, none of a dead
-    /// taxel, and no more of them together than an accumulator takes.
-    pub fn fits(&self, taxels: usize) -> bool {
-        let DeadPlan { taxels: dead, weights, shift } = &self.dead;
-        let sum = |weights: &Vec<i32>| weights.iter().map(|&weight| i64::from(weight).abs()).sum::<i64>();
-        let alive = |weights: &Vec<i32>| dead.iter().all(|&taxel| weights[taxel] == 0);
-        dead.len() <= self.room
-            && *shift < WEIGHT_BITS
-            && dead.windows(2).all(|pair| pair[0] < pair[1])
-            && dead.iter().all(|&taxel| taxel < taxels)
-            && weights.iter().flatten().all(|&weight| i64::from(weight).abs() <= largest(WEIGHT_BITS))
-            && weights.iter().all(|weights| sum(weights) <= MOST_WEIGHT && alive(weights))
     }
 }

@@ -41,8 +41,10 @@ pub enum PageError {
 pub struct Contents {
     version: &'static str,
     points: usize,
-    verified: Vec<(usize, &'static str)>,
-    refusals: Vec<String>,
+    /// How many points were found how.
+    pub verified: Vec<(usize, &'static str)>,
+    /// Why points are not in hardware, each reason once.
+    pub refusals: Vec<String>,
     legend: Vec<(&'static str, &'static str)>,
     sensors: Vec<SensorSection>,
 }

@@ -4,7 +4,6 @@ use golden::design::{CalibrationIn, Curve, Outputs, Samples};
 use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use testbench::banks::random_bank;
 use testbench::co_simulation::model_answers;
 use testbench::dut::{Core, Inputs};
 use testbench::registers::{Access, address};
@@ -13,6 +12,7 @@ use super::{
     ACTIVE, BUSY, COUNTERS, OUT_OF_RANGE, WRONG_CRC, counts, design, errors, judged, load, perform, read_back, subject,
     version, wait,
 };
+use crate::support::banks::random_bank;
 use crate::support::{built, planned, shipped, simulate_exactly};
 
 /// Words and cycles, in every mode of the streams, are the predicted ones.

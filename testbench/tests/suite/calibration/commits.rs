@@ -5,12 +5,12 @@ use hdl_gen::model::Model;
 use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use testbench::banks::random_bank;
 use testbench::co_simulation::timeout;
 use testbench::stream::{Mode, Pattern, Traffic};
 use testbench::verilate::Built;
 
 use super::{BUSY, Subject, core, counts, design, errors, judged, judged_in, load, subject, version};
+use crate::support::banks::random_bank;
 use crate::support::effort::some_of;
 use crate::support::faults::{broken, some_faults};
 use crate::support::{built, in_parallel, planned};

@@ -9,7 +9,6 @@ use hdl_gen::plan::calibration::{Bank, DeadMap};
 use hdl_gen::plan::dead::{DeadPlan, MOST_WEIGHT};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use testbench::banks::{random_bank, random_map};
 use testbench::co_simulation::model_answers;
 use testbench::registers::address;
 
@@ -18,6 +17,7 @@ use super::{
     CONTRADICTION, COUNTERS, OUT_OF_RANGE, Subject, WRONG_CRC, counts, design, errors, judged, load, perform,
     read_back, version, wait,
 };
+use crate::support::banks::{random_bank, random_map, takes, takes_map, tared};
 use crate::support::faults::{broken, some_faults};
 use crate::support::{built, planned, shipped, simulate_exactly};
 
@@ -42,7 +42,7 @@ fn subject() -> &'static Subject {
 /// A bank that replaces these taxels, by the weights that the generator gives them.
 fn with_dead(plan: &Plan, bank: &Bank, dead: &[usize]) -> Bank {
     let map = DeadMap { room: bank.dead.room, dead: DeadPlan::of(&plan.design, dead) };
-    assert!(map.fits(plan.taxels()), "{dead:?}");
+    assert!(takes_map(&map, plan.taxels()), "{dead:?}");
     Bank { dead: map, ..bank.clone() }
 }
 
@@ -203,7 +203,7 @@ fn a_tare_keeps_the_map() {
     for packet in &mut packets {
         (packet[2], packet[6]) = (random.random_range(-1e5_f32..1e5).to_bits(), 1e30_f32.to_bits());
     }
-    let tared = bank.tared(of, &packets).expect("at rest");
+    let tared = tared(&bank, of, &packets).expect("at rest");
     assert!(tared.offsets[2] == 0 && tared.offsets[3] != bank.offsets[3]);
     core.write(address::TARE, 3).expect("a reply");
     packets.extend(counts(&subject.plan, 4, &mut random));
@@ -225,7 +225,7 @@ fn maps_that_contradict_themselves_are_refused() {
     let changed = |change: &dyn Fn(&mut DeadPlan)| {
         let mut bank = good.clone();
         change(&mut bank.dead.dead);
-        assert!(!of.takes(&bank));
+        assert!(!takes(of, &bank));
         bank
     };
     let cases = [

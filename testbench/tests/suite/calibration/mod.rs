@@ -3,6 +3,7 @@
 
 mod banks;
 mod commits;
+mod contents;
 pub mod curve;
 pub mod dead;
 mod tare;

@@ -3,7 +3,6 @@
 use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use testbench::banks::random_bank;
 use testbench::co_simulation::timeout;
 use testbench::registers::{Access, address};
 use testbench::stream::{Mode, Pattern, Traffic, exchange};
@@ -12,6 +11,7 @@ use super::{
     BAD_FRAME, BUSY, NOT_AT_REST, OUT_OF_RANGE, Subject, core, counts, errors, judge, load, perform, read_back, send,
     subject, version,
 };
+use crate::support::banks::{random_bank, tared};
 use crate::support::in_parallel;
 
 /// Cycles in which the bank is written, before the first tare.
@@ -49,7 +49,7 @@ fn at_rest_the_mean_becomes_the_offsets() {
         let bank = quiet_bank(subject, 3.0);
         perform(&mut core, &load(&bank, bank.crc()));
         let frames = rest(subject, 1 << log2, 1.0, &mut random);
-        let tared = bank.tared(subject.calibration(), &frames).expect("at rest");
+        let tared = tared(&bank, subject.calibration(), &frames).expect("at rest");
         core.write(address::TARE, log2).expect("a reply");
         assert_eq!(core.read(address::CALIBRATION_STATUS).expect("a reply") & TARING, TARING);
         core.write(address::CALIBRATION_DATA, 5).expect("a reply");
@@ -94,7 +94,7 @@ fn what_is_no_rest_changes_nothing() {
         let mut core = subject.core(seed);
         perform(&mut core, &load(&bank, bank.crc()));
         let mut packets = rest(subject, 8, 1.0, &mut random);
-        assert!(bank.tared(calibration, &packets).is_some());
+        assert!(tared(&bank, calibration, &packets).is_some());
         change(&mut packets);
         packets.extend(counts(&subject.plan, 4, &mut random));
         core.write(address::TARE, 3).expect("a reply");
@@ -144,7 +144,7 @@ fn a_tare_to_an_offset_out_of_bounds_changes_nothing() {
         (count as f32).to_bits()
     };
     let frame: Vec<u32> = (0..calibration.taxels).map(|taxel| at(taxel, if taxel == 5 { -0.5 } else { 0.0 })).collect();
-    assert!(bank.tared(calibration, std::slice::from_ref(&frame)).is_none());
+    assert!(tared(&bank, calibration, std::slice::from_ref(&frame)).is_none());
     core.write(address::TARE, 0).expect("a reply");
     send(&mut core, &[frame.clone(), frame]);
     assert_eq!(errors(&mut core), OUT_OF_RANGE);
@@ -167,7 +167,7 @@ fn a_tare_again_within_a_frame_leaves_the_rest_of_it_alone() {
     }
     packets[5][5] = f32::NAN.to_bits();
     let pairs: Vec<Vec<u32>> =
-        packets.windows(2).filter_map(|pair| Some(bank.tared(calibration, pair)?.words())).collect();
+        packets.windows(2).filter_map(|pair| Some(tared(&bank, calibration, pair)?.words())).collect();
     let cycles: Vec<u64> = (0..4 * interval).step_by(5).collect();
     let told = in_parallel(&cycles, |&cycle| {
         let mut core = core(&subject.built, 12);

@@ -19,6 +19,7 @@ use testbench::verilate::Built;
 
 use super::{CALIBRATION, DRIVER, MACHINE, SANITIZED, compile, run};
 use crate::calibration;
+use crate::support::banks::takes;
 use crate::support::{built, planned, workspace};
 
 pub(super) fn subject() -> (Plan, Built) {
@@ -88,7 +89,7 @@ pub(super) fn banks(plan: &Plan) -> Vec<BankInputs> {
                 (thresholds.contact, thresholds.noise) = (steps(noise * of.taxels as f64), steps(noise));
             }
             let bank = of.bank(&calibration, &thresholds).expect("within bounds");
-            assert!(of.takes(&bank));
+            assert!(takes(of, &bank));
             BankInputs { calibration, noise, dead, curve, bank }
         })
         .collect()

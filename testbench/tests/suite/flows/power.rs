@@ -54,7 +54,7 @@ fn simulated_activity_becomes_watts_and_energy() {
     let file = folder.work().join(format!("{NAME}.saif"));
     let options = Options { trace: Some(&file), ..Options::default() };
     let report = run::run(&design, &frames, &options, &Progress::hidden()).expect("runs");
-    assert!(report.is_right() && report.traces == [file]);
+    assert!(report.faults.is_empty() && report.traces == [file]);
     let ran = folder.vivado(POWER, &[], &[]).succeeded();
     let line = ran.last_line();
     let figures = "W, dynamic 0.084 W, static 0.597 W, ";

@@ -9,6 +9,7 @@ use testbench::registers::{Access, Controlled, address};
 use testbench::stream::{Outcome, Pacing, Traffic, exchange};
 
 use super::{Subject, packets, subjects};
+use crate::support::banks::tared;
 
 fn subject() -> &'static Subject {
     let in_ram = |subject: &&Subject| subject.plan.design.hardware.calibration == CalibrationIn::Ram;
@@ -75,7 +76,7 @@ fn a_tare_takes_frames_that_have_room() {
     let counts: Vec<f64> = (0..plan.taxels()).map(|taxel| 40.0 + taxel as f64).collect();
     let packet = plan.streams().packet(&counts);
     let samples: Vec<u32> = plan.streams().samples_of(packet.iter().copied()).take(plan.taxels()).collect();
-    let tared = calibration.power_up.tared(calibration, &vec![samples; 4]).expect("rest");
+    let tared = tared(&calibration.power_up, calibration, &vec![samples; 4]).expect("rest");
     let packets = vec![packet; 60];
     for cycle in [10, 700, 1501] {
         judge(&packets, &scan(&packets, cycle, &[write(address::TARE, 2)]), &tared);

@@ -1,5 +1,6 @@
 //! Designs for tests of the emitted RTL: planned, built through the shared cache, simulated, judged.
 
+pub mod banks;
 pub mod calibrated;
 #[allow(dead_code, reason = "shared with the tests of the other crates")]
 #[path = "../../../../golden/tests/suite/designs.rs"]

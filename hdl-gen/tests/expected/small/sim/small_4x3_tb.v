@@ -144,9 +144,8 @@ module small_4x3_tb #(
             if (!right) begin
                 wrong <= wrong + 1;
                 if ((wrong < SHOWN) && (received < WORDS_OUT)) begin
-                    $display("word %0d of frame %0d: expected %h, received %h", received % BEATS_OUT,
-                        received / BEATS_OUT,
-                        word, {m_tlast, m_tdata});
+                    $display("word %0d of frame %0d: expected %h, received %h",
+                        received % BEATS_OUT, received / BEATS_OUT, word, {m_tlast, m_tdata});
                 end
             end
         end

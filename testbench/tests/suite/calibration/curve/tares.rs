@@ -10,6 +10,7 @@ use testbench::stream::{Mode, Pattern, Traffic, exchange};
 
 use super::super::{core, errors, judge, load, perform, read_back, send, wait};
 use super::{counts, others, random_bank_and_curve, subject};
+use crate::support::banks::tared;
 use crate::support::in_parallel;
 
 /// The curve goes along; what the other bank held is gone.
@@ -33,7 +34,7 @@ fn a_tare_takes_the_curve_along() {
                 .collect()
         };
         let frames = rest(1 << log2);
-        let tared = bank.tared(calibration, &frames).expect("at rest");
+        let tared = tared(&bank, calibration, &frames).expect("at rest");
         core.write(address::TARE, log2).expect("a reply");
         let packets = [frames, rest(3), counts(subject, 6, &mut ChaCha8Rng::seed_from_u64(3))].concat();
         let answers = send(&mut core, &packets);
@@ -63,7 +64,7 @@ fn a_tare_takes_no_frame_that_began_before() {
     let bank = Bank { noise: (300.0 / calibration.stress.step()) as u32, ..calibration.power_up.clone() };
     let tared: Vec<Vec<u32>> = packets
         .iter()
-        .filter_map(|frame| Some(bank.tared(calibration, std::slice::from_ref(frame))?.words()))
+        .filter_map(|frame| Some(tared(&bank, calibration, std::slice::from_ref(frame))?.words()))
         .collect();
     assert_eq!(tared.len(), 10);
     let cycles: Vec<u64> = (3000..4200).step_by(8).collect();

@@ -1,15 +1,14 @@
 //! Constants that stand in the library of modules, held against those of the schedule and the integer model.
 
 use golden::estimators::ERROR_RANGE;
-
-use super::rtl::library;
-use crate::cores::{Multiplier, cordic};
-use crate::estimators::{joint, line};
-use crate::format::FRICTION_FRACTION;
-use crate::model::{PULLING, inverse_gain};
-use crate::plan::smoothing::VARIANCE_FRACTION;
-use crate::plan::standard_error::SHARE_FRACTION;
-use crate::timing::latency::{
+use hdl_gen::cores::{Multiplier, cordic};
+use hdl_gen::emit::rtl::library;
+use hdl_gen::estimators::{joint, line};
+use hdl_gen::format::FRICTION_FRACTION;
+use hdl_gen::model::{PULLING, inverse_gain};
+use hdl_gen::plan::smoothing::VARIANCE_FRACTION;
+use hdl_gen::plan::standard_error::SHARE_FRACTION;
+use hdl_gen::timing::latency::{
     STANDARD_ERROR, TAKE_TO_BUS, TAXEL_TO_CEAN, bus_to_sums, bus_to_taxels, bus_to_write, read_to_write,
     taxels_to_write,
 };

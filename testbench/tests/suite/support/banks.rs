@@ -1,9 +1,11 @@
-//! Banks of a calibration in RAM with any content that one takes.
+//! Banks of a calibration in RAM: any content, what one takes, what a tare makes of one. `xtask` has these, too.
 
 use golden::design::Curve;
+use hdl_gen::format::{largest, round_shift};
 use hdl_gen::plan::Plan;
-use hdl_gen::plan::calibration::{Bank, CalibrationPlan, CurveMap, DeadMap};
-use hdl_gen::plan::dead::DeadPlan;
+use hdl_gen::plan::calibration::{Bank, CalibrationPlan, CurveMap, DeadMap, Reading};
+use hdl_gen::plan::dead::{DeadPlan, MOST_WEIGHT, WEIGHT_BITS};
+use hdl_gen::plan::gain::GAIN_BITS;
 use rand::Rng;
 use rand::seq::index::sample;
 use rand_chacha::ChaCha8Rng;
@@ -76,4 +78,55 @@ pub fn random_curve(plan: &Plan, usual: &CurveMap, random: &mut ChaCha8Rng) -> C
             return map;
         }
     }
+}
+
+/// Whether a bank takes all of this.
+pub fn takes(of: &CalibrationPlan, bank: &Bank) -> bool {
+    let gain = |&(mantissa, exponent): &(i32, i32)| {
+        (1 << (GAIN_BITS - 2)..1 << (GAIN_BITS - 1)).contains(&mantissa.abs()) && (-512..512).contains(&exponent)
+    };
+    bank.gains.iter().all(gain)
+        && bank.offsets.iter().all(|&offset| i64::from(offset).abs() <= of.offset_limit)
+        && bank.contact > 0
+        && (1..1 << 26).contains(&bank.noise)
+        && takes_map(&bank.dead, of.taxels)
+        && bank.curve.as_ref().is_none_or(CurveMap::fits)
+        && bank.curve.as_ref().map(|curve| curve.format) == of.curve()
+}
+
+/// Whether a bank takes a map of dead taxels: numbers that ascend and are those of taxels, weights within their width, none
+/// of a dead taxel, and no more of them together than an accumulator takes.
+pub fn takes_map(map: &DeadMap, taxels: usize) -> bool {
+    let DeadPlan { taxels: dead, weights, shift } = &map.dead;
+    let sum = |weights: &Vec<i32>| weights.iter().map(|&weight| i64::from(weight).abs()).sum::<i64>();
+    let alive = |weights: &Vec<i32>| dead.iter().all(|&taxel| weights[taxel] == 0);
+    dead.len() <= map.room
+        && *shift < WEIGHT_BITS
+        && dead.windows(2).all(|pair| pair[0] < pair[1])
+        && dead.iter().all(|&taxel| taxel < taxels)
+        && weights.iter().flatten().all(|&weight| i64::from(weight).abs() <= largest(WEIGHT_BITS))
+        && weights.iter().all(|weights| sum(weights) <= MOST_WEIGHT && alive(weights))
+}
+
+/// What a tare makes of a bank: offsets less the mean of each taxel's stress in the frames, a power of two of them. None
+/// if they do not look like rest, or an offset leaves its bounds.
+pub fn tared(bank: &Bank, of: &CalibrationPlan, frames: &[Vec<u32>]) -> Option<Bank> {
+    let log2 = frames.len().trailing_zeros();
+    let mut tared = bank.clone();
+    for taxel in 0..bank.offsets.len() {
+        let readings: Vec<Reading> = frames.iter().map(|frame| of.stress_of(bank, taxel, frame[taxel])).collect();
+        if readings.iter().any(|reading| reading.saturated || reading.not_finite) {
+            return None;
+        }
+        let steps = || readings.iter().map(|reading| reading.steps);
+        if steps().max()? - steps().min()? > i64::from(bank.noise) {
+            return None;
+        }
+        let offset = i64::from(bank.offsets[taxel]) - round_shift(steps().sum(), log2);
+        if offset.abs() > of.offset_limit {
+            return None;
+        }
+        tared.offsets[taxel] = offset as i32;
+    }
+    Some(tared)
 }
