@@ -213,6 +213,10 @@ WIDE          := $(addprefix designs/,sensor1-wide.toml sensor2-wide.toml)
 CLIPPED       := designs/sensor1-clipped-wide.toml $(TEST_DESIGNS)/sensor2-clipped-wide.toml
 AT_NOISE      := $(TARGET)/at-noise
 
+# Studies that have their own designs.
+STUDIES       := contact-kinds contact-sets layers thin-layers torques clipped clipped-kinds several-contacts \
+	counted-contacts dead-taxels finite-elements finite-elements-summary recordings
+
 # What `calibrate` makes of the paper's sensors at each noise, of single frames (at) and of averages (smoothed), and of a
 # larger array, without further options.
 .PHONY: designs-at-noise
@@ -239,8 +243,7 @@ tables: tools designs-at-noise ## Measure the tables of errors anew, into result
 	@$(XTASK_RELEASE) study confidence $(FAST) $(WIDE) $(CLIPPED) designs/sensor1-reduced.toml \
 	    $(AT_NOISE)/sensor1-fast-smoothed-0.01.toml $(AT_NOISE)/sensor2-fast-smoothed-0.01.toml --out results/confidence.csv
 	@$(XTASK_RELEASE) study drift designs/sensor1-fast.toml designs/sensor1-wide.toml --out results/drift.csv
-	@$(CARGO) test -p sptfra-golden --test suite -- --ignored table clipped::kinds recorded::figures
-	@$(CARGO) test -p sptfra-testbench --test suite -- --ignored count_contacts::table
+	@set -e; for study in $(STUDIES); do $(XTASK_RELEASE) study $$study; done
 	@python3 tools/plots.py
 
 .PHONY: corner-cases

@@ -1,13 +1,11 @@
-//! What only developers run: benchmarks, corner cases, mutants, stress, cell counts.
+//! What only developers run: benchmarks, corner cases, mutants, stress, studies, cell counts.
 
 pub mod bench;
-pub mod confidence;
 pub mod corner_cases;
-pub mod drift;
 pub mod luts;
 pub mod mutants;
-pub mod noise;
 pub mod stress;
+pub mod studies;
 
 /// The beginning of a design whose method and scaling need no constants.
 pub(crate) const PLAIN_DESIGN: &str =

@@ -28,17 +28,6 @@ pub fn design_file(name: &str) -> PathBuf {
     files.find(|file| file.is_file()).unwrap_or_else(|| panic!("no design {name}"))
 }
 
-/// The line search and both training sets on the paper's two sensors.
-pub const ESTIMATORS: [&str; 6] =
-    ["sensor1-none", "sensor1-fast", "sensor1-wide", "sensor2-none", "sensor2-fast", "sensor2-wide"];
-
-/// Writes the rows of a table under `results`, for the designs of these names.
-pub fn renew_table(file: &str, names: &[&str], columns: &str, rows: &str) {
-    let designs: Vec<(String, Design)> = names.iter().map(|&name| (name.to_owned(), design(name))).collect();
-    let path = workspace().join("results").join(file);
-    golden::output::renew_table(&path, &designs, columns, rows).expect("a table that can be written");
-}
-
 /// The names of the paper's designs, `sensor1-none` to `sensor2-f2-p50`.
 pub fn paper() -> impl Iterator<Item = String> {
     ["sensor1", "sensor2"].into_iter().flat_map(|sensor| PAPER.map(|(filter, _)| format!("{sensor}-{filter}")))

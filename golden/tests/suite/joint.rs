@@ -1,29 +1,20 @@
 //! The grid search on ground truth: what it reaches, on contacts that the calibration has not seen.
 
-use std::fmt::Write;
 use std::sync::LazyLock;
 
-use crate::contacts::{Pressed, Worst, centred, inside, pairs, worst};
-use crate::designs::{design, renew_table};
+use crate::contacts::{
+    DISC, FRICTIONS, HERTZ, LAYER, OTHER_SEED, Pressed, SEED, SOFTER, Worst, centred, inside, pairs, worst,
+};
+use crate::designs::design;
 use golden::calibrate::{Settings, calibrate};
 use golden::design::{Design, Estimator, Input, Outputs, PlanKind, TrainingSet};
-use golden::scene::{Kind, Medium, Shape, normal};
+use golden::scene::{Kind, Shape, normal};
 use golden::smoothing::noise_left;
 use golden::solver::{Solution, Solver, Status};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 mod fast;
-
-const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
-const SOFTER: Medium = Medium::BondedLayer { poisson: 0.45 };
-const HERTZ: Shape = Shape::Hertz { semi_axes_m: [7e-3; 2] };
-const DISC: Shape = Shape::Disc { radius_m: 10e-3 };
-/// Of contacts; the calibration of the designs has seed 1 and another way to draw.
-const SEED: u64 = 0x5eed_0ff0;
-/// Of contacts that nothing was tried on before the calibration was settled.
-const OTHER_SEED: u64 = 0x00c0_ffee;
-const FRICTIONS: [f64; 3] = [0.2, 0.5, 0.8];
 
 fn small(algorithm: &str) -> Design {
     let sensor = "format = 3\nbase = \"../golden/tests/plain.toml\"\n\
@@ -367,32 +358,4 @@ fn calibration_trains_at_the_noise_of_the_sensor() {
     });
     assert!(with[1] < 0.9 * with[0] && without[0] < 0.9 * without[1], "{without:?} {with:?}");
     assert!(left[2] < 0.96 * left[1] && with[2] < 0.9 * with[0], "{left:?} {with:?}");
-}
-
-#[test]
-#[ignore = "writes results/contact-sets.csv; minutes"]
-fn table() {
-    let mut rows = String::new();
-    let [first, second] = [
-        ["sensor1-none", "sensor1-fast", "sensor1-fast-100", "sensor1-wide"].as_slice(),
-        ["sensor2-none", "sensor2-fast", "sensor2-wide"].as_slice(),
-    ];
-    for names in [first, second] {
-        let solvers: Vec<Solver> = names.iter().map(|name| Solver::new(&design(name)).unwrap()).collect();
-        let taxels = design(names[0]).sensor;
-        for contacts in fast::SETS {
-            let set = fast::set(&taxels, contacts);
-            let quoted = if contacts.contains(',') { format!("\"{contacts}\"") } else { contacts.to_owned() };
-            for noise in [0.0, 0.2] {
-                for (name, solver) in names.iter().zip(&solvers) {
-                    for friction in FRICTIONS {
-                        let Worst { error: [x, y, _], median, .. } = worst(solver, &set, friction, 0.01 * noise);
-                        // Writing to a String cannot fail.
-                        let _ = writeln!(rows, "{name},{quoted},{noise},{friction},{:.1},{median:.1}", x.max(y));
-                    }
-                }
-            }
-        }
-    }
-    renew_table("contact-sets.csv", &[first, second].concat(), "design,contacts,noise,friction,worst,median", &rows);
 }

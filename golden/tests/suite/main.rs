@@ -2,8 +2,8 @@
 
 mod bank;
 mod check;
-mod clipped;
 mod contact_kinds;
+#[allow(dead_code, reason = "shared with the studies of xtask, which use all of it")]
 mod contacts;
 mod crosstalk;
 mod curve;
@@ -14,7 +14,6 @@ mod designs;
 #[allow(dead_code, reason = "shared with the tests of the RTL, which use all of it")]
 mod effort;
 mod estimator;
-mod finite_elements;
 mod fuzz;
 mod half_space;
 mod joint;
@@ -32,6 +31,5 @@ mod scene_file;
 mod separate;
 mod smoothing;
 mod stages;
-mod thin;
 mod tune_filter;
 mod workspace;

@@ -1,13 +1,10 @@
 //! Contacts of other kinds than those that the estimators were made for: what is left of their accuracy.
 
 mod expected_error;
-mod layers;
-mod torque;
 
 use std::f64::consts::PI;
-use std::fmt::Write;
 
-use crate::designs::{ESTIMATORS, design, renew_table};
+use crate::designs::design;
 use golden::calibrate::state_errors;
 use golden::scene::{Kind, SceneFrame, normal};
 use golden::smoothing::noise_left;
@@ -15,21 +12,16 @@ use golden::solver::{Solver, Status};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// Whether the contacts have frictions of their own, whatever is asked for.
-pub fn has_own_friction(kind: Kind) -> bool {
-    matches!(kind, Kind::MixedInside | Kind::Mixed)
-}
-
 /// Errors of a solver on the frames of one kind of contact.
-pub struct Judged {
+struct Judged {
     /// Length of the error of the tangential force in percent of the normal force: of each frame, in rising order.
-    pub errors: Vec<f64>,
+    errors: Vec<f64>,
     /// Percent of frames with an error within one standard error, within two, and with low confidence.
-    pub within: [f64; 2],
-    pub low_confidence: f64,
+    within: [f64; 2],
+    low_confidence: f64,
 }
 
-pub fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
+fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
     let (mut within, mut low_confidence) = ([0; 2], 0);
     let mut errors: Vec<f64> = frames
         .iter()
@@ -48,7 +40,7 @@ pub fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
     Judged { errors, within: within.map(share), low_confidence: share(low_confidence) }
 }
 
-pub fn share(sorted: &[f64], share: f64) -> f64 {
+fn share(sorted: &[f64], share: f64) -> f64 {
     sorted[((sorted.len() as f64 * share).ceil() as usize).clamp(1, sorted.len()) - 1]
 }
 
@@ -137,41 +129,4 @@ fn a_standard_error_is_right_in_averages_and_after_a_restart() {
         let Judged { within: [one, two], .. } = judge(&Solver::new(&design).unwrap(), &frames);
         assert!((55.0..75.0).contains(&one) && two > 93.0, "{noise}: {one:.0} {two:.0}");
     }
-}
-
-/// Median, 95 % and worst, as cells of a CSV file.
-pub fn cells(Judged { errors, .. }: &Judged) -> String {
-    let [median, most, worst] = [0.5, 0.95, 1.0].map(|part| share(errors, part));
-    format!("{median:.1},{most:.1},{worst:.1}")
-}
-
-#[test]
-#[ignore = "writes results/contact-kinds.csv; a quarter of an hour"]
-fn table() {
-    const FRAMES: u64 = 200;
-    let mut rows = String::new();
-    for sensor in ["sensor1", "sensor2"] {
-        let designs = ["none", "fast", "wide"].map(|kind| design(&format!("{sensor}-{kind}")));
-        let solvers = designs.each_ref().map(|design| Solver::new(design).unwrap());
-        let number = &sensor[6..];
-        for kind in Kind::all() {
-            let all = has_own_friction(kind);
-            let of = |friction: f64| -> Vec<SceneFrame> {
-                let frames = if all { 10 * FRAMES } else { FRAMES };
-                kind.frames(&designs[1].sensor, friction, 1000..1000 + frames).unwrap()
-            };
-            let frames = of(0.5);
-            let found = solvers.each_ref().map(|solver| judge(solver, &frames));
-            let own = if all { "0.1 to 1" } else { "0.5" };
-            for (estimator, judged) in ["line", "sliding", "general"].iter().zip(&found) {
-                // Writing to a String cannot fail.
-                let _ = writeln!(rows, "{number},{kind},{estimator},{own},{}", cells(judged));
-            }
-            for friction in [0.2, 0.8].into_iter().filter(|_| !all) {
-                let judged = judge(&solvers[2], &of(friction));
-                let _ = writeln!(rows, "{number},{kind},general,{friction},{}", cells(&judged));
-            }
-        }
-    }
-    renew_table("contact-kinds.csv", &ESTIMATORS, "sensor,kind,estimator,friction,median,p95,worst", &rows);
 }

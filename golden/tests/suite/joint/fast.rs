@@ -5,31 +5,16 @@ use std::fs;
 use std::path::Path;
 use std::thread;
 
-use super::{DISC, HERTZ, LAYER, OTHER_SEED, SEED, SOFTER, design, within};
-use crate::contacts::{Pressed, Worst, anywhere, centred, inside, pairs, worst};
+use super::{design, within};
+use crate::contacts::{DISC, HERTZ, LAYER, OTHER_SEED, Pressed, SEED, Worst, centred, inside, set, worst};
 use crate::effort::some_of;
 use golden::design::{Design, Sensor};
-use golden::scene::Shape;
 use golden::solver::Solver;
 
 /// Half of the last digit.
 const ROUNDED: f64 = 0.0501;
 /// Rows of `results/contact-sets.csv`, without those of the line search.
 const ROWS: usize = 300;
-
-/// The sets of contacts.
-pub const SETS: [&str; 10] = [
-    "Hertz 7 mm",
-    "Hertz 7 mm, ν 0.45",
-    "disc 10 mm",
-    "disc 10 mm, ν 0.45",
-    "punch 6 mm",
-    "200 inside",
-    "200 inside, ν 0.45",
-    "1000 more inside",
-    "200 anywhere",
-    "100 pairs",
-];
 
 /// A row of `results/contact-sets.csv`.
 struct Row {
@@ -59,23 +44,6 @@ fn stated() -> Vec<Row> {
         Row { design: design.to_owned(), contacts: contacts.to_owned(), noise, friction, error: [worst, median] }
     };
     lines.map(row).filter(|row| !row.design.ends_with("-none")).collect()
-}
-
-/// The contacts of a set.
-pub fn set(taxels: &Sensor, contacts: &str) -> Vec<Pressed> {
-    match contacts {
-        "Hertz 7 mm" => centred(taxels, LAYER, HERTZ),
-        "Hertz 7 mm, ν 0.45" => centred(taxels, SOFTER, HERTZ),
-        "disc 10 mm" => centred(taxels, LAYER, DISC),
-        "disc 10 mm, ν 0.45" => centred(taxels, SOFTER, DISC),
-        "punch 6 mm" => centred(taxels, LAYER, Shape::Punch { radius_m: 6e-3 }),
-        "200 inside" => inside(taxels, LAYER, SEED, 200),
-        "200 inside, ν 0.45" => inside(taxels, SOFTER, SEED, 200),
-        "1000 more inside" => inside(taxels, LAYER, OTHER_SEED, 1000),
-        "200 anywhere" => anywhere(taxels, LAYER, 200),
-        "100 pairs" => pairs(taxels, LAYER, SEED, 100),
-        other => panic!("no contacts are called {other}"),
-    }
 }
 
 /// The rows on these contacts that are not what the designs reach. The contacts are made once for each sensor.

@@ -4,8 +4,8 @@ use golden::calibrate::recorded::{Measured, fit_uniform};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::simulated::{design, gains, normal};
-use super::{COUNTS, deviation, says};
+use super::says;
+use super::simulated::{COUNTS, design, deviation, gains, normal};
 
 #[test]
 fn a_bladder_tells_gains_curve_and_dead_taxels() {

@@ -6,75 +6,12 @@ mod rates;
 mod simulated;
 mod table;
 
-use std::fmt::Write;
-
-use crate::designs::renew_table;
 use golden::calibrate::recorded::{Measured, Recorded, fit_forces};
-use golden::design::{Curve, Design};
-use golden::solver::{Solver, Status};
-use simulated::{Indenter, Recipe, Recording, design, record, weights_only};
-
-const COUNTS: &str = "pa_per_count = -10.0\ntension = \"clipped\"";
-
-/// Median, 95 % and worst error of `F_z` in percent over the middle frame of a recording's holds, but for those that the
-/// solver says are saturated, and the share of these.
-fn errors(design: &Design, recording: &Recording, frames: usize) -> [f64; 4] {
-    let solver = Solver::new(design).unwrap();
-    // So many frames of load and two without.
-    let middle: Vec<usize> = (0..recording.frames.len()).filter(|frame| frame % (frames + 2) == frames / 2).collect();
-    let mut errors = Vec::new();
-    for &frame in &middle {
-        let found = solver.solve(&recording.frames[frame]).unwrap();
-        if !found.status.contains(Status::SATURATED) {
-            let error = found.resultant[2] / recording.measured.forces[frame][2].unwrap() - 1.0;
-            errors.push(100.0 * error.abs());
-        }
-    }
-    errors.sort_by(f64::total_cmp);
-    let saturated = 100.0 * (1.0 - errors.len() as f64 / middle.len() as f64);
-    [errors[errors.len() / 2], errors[errors.len() * 95 / 100], errors[errors.len() - 1], saturated]
-}
-
-/// Standard deviation of the curve found over the true one, in percent, from a tenth of the range on.
-fn bends(found: &Recorded, recipe: &Recipe) -> f64 {
-    deviation(found.points[6..].iter().map(|[count, pascals]| pascals / count.powf(recipe.power)))
-}
-
-fn deviation(ratios: impl Iterator<Item = f64> + Clone) -> f64 {
-    let count = ratios.clone().count() as f64;
-    let mean = ratios.clone().sum::<f64>() / count;
-    100.0 * (ratios.map(|ratio| (ratio / mean - 1.0).powi(2)).sum::<f64>() / count).sqrt()
-}
+use golden::design::Curve;
+use simulated::{COUNTS, Indenter, Recipe, design, record, study, weights_only};
 
 fn says(lines: &[String], parts: &[&str]) -> bool {
     lines.iter().any(|line| parts.iter().all(|part| line.contains(part)))
-}
-
-/// A recording of a kind: what is found, its curve's bend, the deviation of the gains, and median, 95 % and worst error on
-/// other contacts, of discs unless those were recorded.
-fn study(recipe: &Recipe) -> (Recorded, [f64; 7]) {
-    let mut recording = record(recipe);
-    weights_only(&mut recording.measured);
-    // Some loads nobody wrote down.
-    for force in recording.measured.forces.iter_mut().skip(7).step_by(11) {
-        force[2] = None;
-    }
-    let found = fit_forces(&design(COUNTS, ""), &recording.frames, &recording.measured).unwrap();
-    // The same sensor, so the same gains, under other contacts.
-    let indenter = if recipe.indenter == Indenter::Disc { Indenter::Ball } else { Indenter::Disc };
-    let others = Recipe { indenter, places: 16, loads: vec![2.5, 4.5, 6.0], creep: 0.0, repeat: 0.0, ..recipe.clone() };
-    let others = simulated::record_at(&others, recipe.seed + 1000);
-    let [median, most, worst, saturated] = errors(&found.design, &others, recipe.frames);
-    let own = found
-        .gains
-        .iter()
-        .zip(&recording.gains)
-        .filter(|(gain, _)| gain.touched)
-        .map(|(gain, truth)| gain.gain / truth);
-    let before =
-        recording.gains.iter().zip(&found.gains).filter(|(_, gain)| gain.touched).map(|(truth, _)| 1.0 / truth);
-    let figures = [bends(&found, recipe), deviation(before), deviation(own), median, most, worst, saturated];
-    (found, figures)
 }
 
 /// What a recording of a kind must reach: bend of the curve, and median, 95 % and worst error on other contacts.
@@ -91,69 +28,6 @@ fn check(what: &str, recipe: &Recipe, limits: [f64; 4]) -> Recorded {
 fn weights_that_repeat_lack_no_frames() {
     let recipe = Recipe { noise: 2.0, scale: 40.0, spread: 0.1, ..Recipe::new(200, Indenter::Ball) };
     assert!(study(&recipe).1[3] < 2.0);
-}
-
-/// From seeds and indenters that no choice was made on.
-#[test]
-#[ignore = "writes results/recordings.csv; two minutes"]
-fn figures() {
-    let mut rows = String::new();
-    let plain = Recipe { noise: 2.0, ..Recipe::new(0, Indenter::Ball) };
-    let kinds = [
-        ("straight, gains 10 %", Recipe { scale: 40.0, spread: 0.1, ..plain.clone() }),
-        ("power 1.25, gains 10 %", Recipe { power: 1.25, scale: 5.0, spread: 0.1, ..plain.clone() }),
-        ("power 0.57, gains 10 %", Recipe { power: 0.57, scale: 1200.0, spread: 0.1, ..plain.clone() }),
-        ("power 0.57, 12 places", Recipe { power: 0.57, scale: 1200.0, spread: 0.1, places: 12, ..plain.clone() }),
-        (
-            "power 0.57, repeats to 10 %",
-            Recipe {
-                power: 0.57,
-                scale: 1200.0,
-                spread: 0.1,
-                rest: 60.0,
-                creep: 0.33,
-                repeat: 0.1,
-                frames: 10,
-                ..plain.clone()
-            },
-        ),
-        (
-            "power 0.57, repeats to 18 %",
-            Recipe {
-                power: 0.57,
-                scale: 1200.0,
-                spread: 0.1,
-                rest: 60.0,
-                creep: 0.33,
-                repeat: 0.18,
-                frames: 10,
-                ..plain
-            },
-        ),
-    ];
-    for (what, recipe) in kinds {
-        let (mut all, mut told) = (Vec::new(), Vec::new());
-        for index in 0..9 {
-            let indenter = [Indenter::Ball, Indenter::Disc, Indenter::Block][index as usize % 3];
-            let (found, figures) = study(&Recipe { seed: 200 + index, indenter, ..recipe.clone() });
-            all.push(figures);
-            told.push(found.errors.map_or(0.0, |errors| errors.median));
-        }
-        let middle = |of: &dyn Fn(&[f64; 7]) -> f64| {
-            let mut values: Vec<f64> = all.iter().map(of).collect();
-            values.sort_by(f64::total_cmp);
-            [values[values.len() / 2], values[values.len() - 1]]
-        };
-        let columns: Vec<String> =
-            (0..7).map(|k| middle(&|figures| figures[k])).map(|[m, w]| format!("{m:.1},{w:.1}")).collect();
-        told.sort_by(f64::total_cmp);
-        // Writing to a String cannot fail.
-        let _ = writeln!(rows, "\"{what}\",{},{:.1},{:.1}", columns.join(","), told[4], told[8]);
-    }
-    let columns = "sensor,curve,curve_worst,gains_before,gains_before_worst,gains_after,gains_after_worst,fz_median,\
-                   fz_median_worst,fz_p95,fz_p95_worst,fz_worst,fz_worst_worst,saturated,saturated_worst,printed_median,\
-                   printed_median_worst";
-    renew_table("recordings.csv", &[], columns, &rows);
 }
 
 fn straight(seed: u64) -> Recipe {

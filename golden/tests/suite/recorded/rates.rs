@@ -4,8 +4,8 @@ use golden::calibrate::recorded::{Measured, fit_forces, read_forces};
 use golden::frames::{Layout, read_recording};
 use golden::solver::{Solver, Status};
 
-use super::simulated::{Indenter, Recipe, Recording, design, record};
-use super::{COUNTS, says};
+use super::says;
+use super::simulated::{COUNTS, Indenter, Recipe, Recording, design, record};
 
 fn recording() -> Recording {
     record(&Recipe { scale: 40.0, noise: 2.0, places: 12, frames: 8, ..Recipe::new(81, Indenter::Disc) })

@@ -1,9 +1,10 @@
 //! Recordings of a sensor whose curve and gains are known: a ball, a flat disc or a block with weights on it, at random
-//! places, with noise, creep and a load that never comes out twice the same.
+//! places, with noise, creep and a load that never comes out twice the same. [`study`] calibrates by them.
 
-use golden::calibrate::recorded::Measured;
+use golden::calibrate::recorded::{Measured, Recorded, fit_forces};
 use golden::design::{Design, Sensor};
 use golden::scene::{Contact, Medium, Scene, SceneFrame, SensorErrors, Shape, Traction};
+use golden::solver::{Solver, Status};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -200,4 +201,65 @@ pub fn weights_only(measured: &mut Measured) {
     for force in &mut measured.forces {
         (force[0], force[1]) = (None, None);
     }
+}
+
+/// Keys of a sensor of counts.
+pub const COUNTS: &str = "pa_per_count = -10.0\ntension = \"clipped\"";
+
+/// Median, 95 % and worst error of `F_z` in percent over the middle frame of a recording's holds, but for those that the
+/// solver says are saturated, and the share of these.
+fn errors(design: &Design, recording: &Recording, frames: usize) -> [f64; 4] {
+    let solver = Solver::new(design).unwrap();
+    // So many frames of load and two without.
+    let middle: Vec<usize> = (0..recording.frames.len()).filter(|frame| frame % (frames + 2) == frames / 2).collect();
+    let mut errors = Vec::new();
+    for &frame in &middle {
+        let found = solver.solve(&recording.frames[frame]).unwrap();
+        if !found.status.contains(Status::SATURATED) {
+            let error = found.resultant[2] / recording.measured.forces[frame][2].unwrap() - 1.0;
+            errors.push(100.0 * error.abs());
+        }
+    }
+    errors.sort_by(f64::total_cmp);
+    let saturated = 100.0 * (1.0 - errors.len() as f64 / middle.len() as f64);
+    [errors[errors.len() / 2], errors[errors.len() * 95 / 100], errors[errors.len() - 1], saturated]
+}
+
+/// Standard deviation of the curve found over the true one, in percent, from a tenth of the range on.
+fn bends(found: &Recorded, recipe: &Recipe) -> f64 {
+    deviation(found.points[6..].iter().map(|[count, pascals]| pascals / count.powf(recipe.power)))
+}
+
+/// Standard deviation of ratios, in percent of their mean.
+pub fn deviation(ratios: impl Iterator<Item = f64> + Clone) -> f64 {
+    let count = ratios.clone().count() as f64;
+    let mean = ratios.clone().sum::<f64>() / count;
+    100.0 * (ratios.map(|ratio| (ratio / mean - 1.0).powi(2)).sum::<f64>() / count).sqrt()
+}
+
+/// A recording of a kind: what is found, its curve's bend, the deviation of the gains, and median, 95 % and worst error on
+/// other contacts, of discs unless those were recorded.
+pub fn study(recipe: &Recipe) -> (Recorded, [f64; 7]) {
+    let mut recording = record(recipe);
+    weights_only(&mut recording.measured);
+    // Some loads nobody wrote down.
+    for force in recording.measured.forces.iter_mut().skip(7).step_by(11) {
+        force[2] = None;
+    }
+    let found = fit_forces(&design(COUNTS, ""), &recording.frames, &recording.measured).unwrap();
+    // The same sensor, so the same gains, under other contacts.
+    let indenter = if recipe.indenter == Indenter::Disc { Indenter::Ball } else { Indenter::Disc };
+    let others = Recipe { indenter, places: 16, loads: vec![2.5, 4.5, 6.0], creep: 0.0, repeat: 0.0, ..recipe.clone() };
+    let others = record_at(&others, recipe.seed + 1000);
+    let [median, most, worst, saturated] = errors(&found.design, &others, recipe.frames);
+    let own = found
+        .gains
+        .iter()
+        .zip(&recording.gains)
+        .filter(|(gain, _)| gain.touched)
+        .map(|(gain, truth)| gain.gain / truth);
+    let before =
+        recording.gains.iter().zip(&found.gains).filter(|(_, gain)| gain.touched).map(|(truth, _)| 1.0 / truth);
+    let figures = [bends(&found, recipe), deviation(before), deviation(own), median, most, worst, saturated];
+    (found, figures)
 }

@@ -1,7 +1,11 @@
-//! Frames with several contacts, of every kind.
+//! Frames with several contacts, of every kind, and how they are judged.
+
+use std::ops::Range;
 
 use golden::design::Sensor;
+use golden::metrics::{ContactErrors, Quantiles};
 use golden::scene::{Contact, Medium, Scene, SceneFrame, SensorErrors, Shape, Shear, Traction};
+use golden::solver::{Solution, Solver};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -47,6 +51,15 @@ pub fn frame(sensor: &Sensor, kind: Kind, seed: u64) -> SceneFrame {
 /// The same, and the scene that it is of.
 pub fn frame_and_scene(sensor: &Sensor, kind: Kind, seed: u64) -> (SceneFrame, Scene) {
     (0..).find_map(|attempt| try_frame(sensor, kind, seed + ATTEMPT * attempt)).unwrap()
+}
+
+/// Frames of a kind as a sensor reads them that knows no pull.
+pub fn clipped(sensor: &Sensor, kind: Kind, seeds: Range<u64>) -> Vec<SceneFrame> {
+    let mut frames: Vec<SceneFrame> = seeds.map(|seed| frame(sensor, kind, seed)).collect();
+    for stress in frames.iter_mut().flat_map(|frame| &mut frame.stress) {
+        *stress = stress.min(0.0);
+    }
+    frames
 }
 
 fn try_frame(sensor: &Sensor, kind: Kind, seed: u64) -> Option<(SceneFrame, Scene)> {
@@ -166,4 +179,23 @@ fn any(radius: f64, [kind, push, ratio, turn, edge, along, across, share, spin]:
         };
     }
     (shape, traction)
+}
+
+/// What a solver makes of frames: errors in percent of the normal force.
+pub struct Judged {
+    /// Of the sum of all contacts, along the surface.
+    pub total: Quantiles,
+    /// Of each contact.
+    pub contacts: ContactErrors,
+}
+
+pub fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
+    let solutions: Vec<Solution> = frames.iter().map(|frame| solver.solve(&frame.stress).unwrap()).collect();
+    let error = |(found, frame): (&Solution, &SceneFrame)| {
+        let [x, y] = [0, 1].map(|axis| found.resultant[axis] - frame.force[axis]);
+        100.0 * x.hypot(y) / frame.force[2].abs()
+    };
+    let total = Quantiles::of(solutions.iter().zip(frames).map(error).collect());
+    let contacts = ContactErrors::new(frames.iter().map(|frame| &frame.contacts).zip(&solutions));
+    Judged { total, contacts }
 }

@@ -1,35 +1,16 @@
 //! Several contacts on one sensor, each with its own forces: what is left of their accuracy, and what is told of each.
 
 mod clipped;
+#[allow(dead_code, reason = "shared with the studies of xtask, which use all of it")]
 mod kinds;
-mod tables;
 
 use crate::designs;
 use golden::contacts::ContactForces;
 use golden::design::{Design, PlanKind, Slip};
-use golden::metrics::{ContactErrors, Quantiles};
+use golden::metrics::ContactErrors;
 use golden::scene::SceneFrame;
 use golden::solver::{PIECE, Past, Slips, Solution, Solver, Status};
-use kinds::{Kind, frame};
-
-/// What a solver makes of frames: errors in percent of the normal force.
-struct Judged {
-    /// Of the sum of all contacts, along the surface.
-    total: Quantiles,
-    /// Of each contact.
-    contacts: ContactErrors,
-}
-
-fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
-    let solutions: Vec<Solution> = frames.iter().map(|frame| solver.solve(&frame.stress).unwrap()).collect();
-    let error = |(found, frame): (&Solution, &SceneFrame)| {
-        let [x, y] = [0, 1].map(|axis| found.resultant[axis] - frame.force[axis]);
-        100.0 * x.hypot(y) / frame.force[2].abs()
-    };
-    let total = Quantiles::of(solutions.iter().zip(frames).map(error).collect());
-    let contacts = ContactErrors::new(frames.iter().map(|frame| &frame.contacts).zip(&solutions));
-    Judged { total, contacts }
-}
+use kinds::{Kind, frame, judge};
 
 fn design(name: &str, contacts: usize) -> Design {
     let mut design = designs::design(name);

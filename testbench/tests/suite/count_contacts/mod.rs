@@ -6,12 +6,11 @@ pub mod kinds;
 mod module;
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 use golden::contacts::{Labels, SHARE};
 use golden::design::{Design, Estimator, Outputs, PlanKind, Sensor};
 use golden::matrices::{Matrices, MatrixName};
-use golden::solver::{Solver, Status};
+use golden::solver::Solver;
 use hdl_gen::model::{BAD_LENGTH, NO_CONTACT, NOT_FINITE, SEVERAL_CONTACTS};
 use hdl_gen::plan::{Plan, words};
 use hdl_gen::timing::latency;
@@ -21,7 +20,7 @@ use testbench::co_simulation::{model_answers, timeout};
 use testbench::stream::{Mode, Pattern, Traffic, exchange};
 
 use crate::support::effort::half_of;
-use crate::support::{built, by_plan, designs, frames, in_parallel, planned, shipped, simulate_exactly, with_joint};
+use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint};
 use kinds::{Kind, frame};
 
 fn counting(mut design: Design) -> Design {
@@ -171,39 +170,9 @@ fn counts_wait_for_their_frames() {
     assert!([1, 2].iter().all(|&contacts| found.iter().any(|found| found.1 == contacts)), "{found:?}");
 }
 
-/// Frames of a kind, and in how many of them the hardware counts as many contacts as the solver, as the scene has, and more
-/// than one.
-fn agreement(plan: &Plan, solver: &Solver, kind: Kind, frames: u64, seed: u64) -> [usize; 3] {
-    let scenes: Vec<_> = (0..frames).map(|number| frame(&plan.design.sensor, kind, seed + number)).collect();
-    let packets: Vec<Vec<u32>> = scenes.iter().map(|scene| plan.streams().packet(&scene.stress)).collect();
-    let mut counts = [0; 3];
-    for (answer, scene) in model_answers(plan, &packets).iter().zip(&scenes) {
-        let found = solver.solve(&scene.stress).expect("a whole frame");
-        assert_eq!(found.status.contains(Status::SEVERAL_CONTACTS), found.contacts > 1);
-        let contacts = (answer[words::COUNTERS] & 0xFF) as usize;
-        let told = [contacts == found.contacts, contacts == scene.contacts.len(), contacts > 1];
-        counts.iter_mut().zip(told).for_each(|(count, told)| *count += usize::from(told));
-    }
-    counts
-}
-
 fn pair(name: &str) -> (Plan, Solver) {
     let design = counting(shipped(name));
     (planned(&design), Solver::new(&design).expect("matrices"))
-}
-
-#[test]
-fn the_solver_counts_as_the_hardware_does() {
-    for name in ["sensor1-fast", "sensor2-none"] {
-        let (plan, solver) = pair(name);
-        for (kind, marked) in [(Kind::One, 0..=0), (Kind::Anyhow, 11..=12), (Kind::Three, 12..=12)] {
-            let [same, right, several] = agreement(&plan, &solver, kind, 12, 500);
-            assert!(
-                same == 12 && right >= 10 && marked.contains(&several),
-                "{name}, {kind:?}: {same} {right} {several}"
-            );
-        }
-    }
 }
 
 /// Rounding may move a taxel or a component across its threshold that is so near to it, in shares of the largest `|w|` or of
@@ -268,36 +237,4 @@ fn counts_differ_within_the_margin_of_rounding_alone() {
         }
         assert!(frames.iter().all(|&frames| frames >= 25), "{name}: {frames:?} frames beyond and within the margin");
     }
-}
-
-#[test]
-#[ignore = "writes results/counted-contacts.csv; a minute"]
-fn table() {
-    let mut rows = String::new();
-    let kinds = [
-        (Kind::One, "one alone"),
-        (Kind::Same, "two, pushed the same way"),
-        (Kind::Opposed, "two, opposed"),
-        (Kind::Anyhow, "two, anyhow"),
-        (Kind::Small, "4 N, and 1 N on half the radius"),
-        (Kind::Held, "one slides, one is held"),
-        (Kind::Three, "three, anyhow"),
-        (Kind::Row, "three in a row"),
-        (Kind::Apart(6000), "two, 6 mm apart"),
-        (Kind::Apart(4000), "two, 4 mm apart"),
-        (Kind::Apart(2000), "two, 2 mm apart"),
-        (Kind::Apart(0), "two that touch"),
-        (Kind::Heavier(6), "one 6 times as heavy"),
-        (Kind::Heavier(10), "one 10 times as heavy"),
-    ];
-    let names = ["sensor1-fast", "sensor2-fast"];
-    let pairs = names.map(pair);
-    for (kind, label) in kinds {
-        for (number, (plan, solver)) in pairs.iter().enumerate() {
-            let [same, right, several] = agreement(plan, solver, kind, 100, 3000);
-            // Writing to a String cannot fail.
-            let _ = writeln!(rows, "{},\"{label}\",{several},{right},{same}", number + 1);
-        }
-    }
-    designs::renew_table("counted-contacts.csv", &names, "sensor,frames,marked,right,as_f64", &rows);
 }

@@ -13,7 +13,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use crate::noise::{NoiseError, noisy};
+use super::noise::noisy;
+use super::{Fallible, Rows};
 
 /// Friction of the contacts.
 const FRICTION: f64 = 0.5;
@@ -227,11 +228,11 @@ fn of_contact(
     disturbance: &Disturbance,
     [before, frame]: [&SceneFrame; 2],
     seed: u64,
-) -> Result<Vec<Errors>, NoiseError> {
+) -> Fallible<Vec<Errors>> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let largest = frame.stress.iter().fold(0.0_f64, |largest, stress| largest.max(stress.abs()));
     let taxels = taxels(disturbance, frame.stress.len(), largest, &mut random);
-    let creep = if disturbance.times.is_empty() { None } else { Some(common(&taxels).map_err(NoiseError::Creep)?) };
+    let creep = if disturbance.times.is_empty() { None } else { Some(common(&taxels)?) };
     let mut channels: Vec<Channel> = taxels.into_iter().map(|taxel| Channel::new(taxel, creep)).collect();
     let unloaded = vec![0.0; frame.stress.len()];
     let load = |channels: &mut [Channel], stress: &[f64], frames: usize| {
@@ -267,11 +268,7 @@ fn of_contact(
 pub const COLUMNS: &str = "design,readings,correction,seconds,f_z,f_z_p95,f_z_worst,shear,shear_p95,shear_worst,friction,friction_p95,friction_worst";
 
 /// The table of some designs, which go by the names of their files.
-///
-/// # Errors
-///
-/// [`NoiseError`]: a sensor without matrices or scenes.
-pub fn rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
+pub fn rows(designs: &[(String, Design)]) -> Rows {
     let mut text = String::new();
     for (name, design) in designs {
         let solver = Solver::new(design)?;

@@ -10,7 +10,8 @@ use golden::solver::{Solver, Status};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::noise::{NoiseError, noisy};
+use super::noise::noisy;
+use super::{Fallible, Rows};
 
 /// Standard deviations of a reading in percent of the frame's largest; the design is told each.
 const NOISE_PERCENT: [f64; 4] = [0.2, 0.5, 1.0, 2.0];
@@ -34,11 +35,7 @@ struct Frame {
 pub const COLUMNS: &str = "design,noise,kind,within_one,within_two,low,least,most,pulling";
 
 /// The table of some designs, which go by the names of their files.
-///
-/// # Errors
-///
-/// [`NoiseError`]: a sensor without matrices or scenes.
-pub fn rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
+pub fn rows(designs: &[(String, Design)]) -> Rows {
     let mut text = String::new();
     for (name, design) in designs {
         for percent in NOISE_PERCENT {
@@ -68,7 +65,7 @@ pub fn rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
     Ok(text)
 }
 
-fn frames(design: &Design, solver: &Solver, kind: Kind, percent: f64) -> Result<Vec<Frame>, NoiseError> {
+fn frames(design: &Design, solver: &Solver, kind: Kind, percent: f64) -> Fallible<Vec<Frame>> {
     let mut random = ChaCha8Rng::seed_from_u64(SEEDS.start);
     let mut found = Vec::new();
     for frame in kind.frames(&design.sensor, FRICTION, SEEDS)? {

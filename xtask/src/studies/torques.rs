@@ -6,10 +6,14 @@ use golden::contacts::ContactForces;
 use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneFrame};
 use golden::sensor::Sensor;
-use golden::solver::Solver;
+use golden::solver::{Solver, SolverError};
 
-use super::{design, has_own_friction};
-use crate::designs::renew_table;
+use super::{Rows, contact_kinds, design};
+
+/// The columns of [`rows`].
+pub const COLUMNS: &str = "sensor,kind,line_tz_median,line_tz_p95,line_tz_worst,tz_median,tz_p95,tz_worst,own_median,own_p95,own_worst,own_true,place_median,place_p95,place_worst,along,beside";
+/// The designs of the table.
+pub const DESIGNS: [&str; 4] = ["sensor1-none", "sensor1-wide", "sensor2-none", "sensor2-wide"];
 
 /// Errors over the normal force in mm.
 struct Torques {
@@ -33,12 +37,12 @@ fn own(sensor: &Sensor, force: [f64; 3], torque: [f64; 3]) -> ([f64; 2], f64) {
     (centre, torque[2] - sensor.torque_of(centre, force)[2])
 }
 
-fn judge(solver: &Solver, frames: &[SceneFrame]) -> Torques {
+fn judge(solver: &Solver, frames: &[SceneFrame]) -> Result<Torques, SolverError> {
     let sensor = solver.matrices().sensor();
     let mut errors = [const { Vec::new() }; 4];
     let mut shifts = Vec::new();
     for frame in frames {
-        let found = solver.solve(&frame.stress).unwrap();
+        let found = solver.solve(&frame.stress)?;
         let (truth, true_own) = own(sensor, frame.force, frame.torque);
         let (centre, found_own) = own(sensor, found.resultant, found.torque);
         let normal = frame.force[2].abs();
@@ -56,46 +60,22 @@ fn judge(solver: &Solver, frames: &[SceneFrame]) -> Torques {
     let [place, about_middle, own, is] = errors.map(Quantiles::of);
     let along = shifts.iter().map(|[along, _]| along).sum::<f64>() / shifts.len() as f64;
     let beside = Quantiles::of(shifts.iter().map(|[shift, across]| (shift - along).hypot(*across)).collect());
-    Torques { place, along, beside, about_middle, own, is }
+    Ok(Torques { place, along, beside, about_middle, own, is })
 }
 
-/// Within the grid a contact's place is known to a fraction of the pitch, and `T_z` to what the tangential force errs by times
-/// its arm.
-#[test]
-fn torques_are_near_the_true_ones_on_every_kind() {
-    let solver = Solver::new(&design("sensor2-wide")).unwrap();
-    for kind in Kind::all() {
-        let frames = kind.frames(solver.matrices().sensor(), 0.5, 0..8).unwrap();
-        let Torques { place, along, beside, about_middle, own, is } = judge(&solver, &frames);
-        let said = format!("{}: {place:?} {along} {beside:?} {about_middle:?} {own:?} {is:?}", kind.title());
-        // Too far along the push, and hardly anything else.
-        if kind == Kind::Sliding {
-            assert!((0.4..0.7).contains(&along) && beside.median < 0.25, "{said}");
-        }
-        match kind {
-            Kind::Border | Kind::Mixed => {}
-            // What turns about its own axis presses and pulls as what does not.
-            Kind::Spinning => assert!(place.median < 0.8 && own.median > 0.9 * is.median && is.median > 0.5, "{said}"),
-            _ => assert!(place.median < 0.8 && about_middle.median < 0.6 && own.median < 0.3, "{said}"),
-        }
-    }
-}
-
-#[test]
-#[ignore = "writes results/torques.csv; minutes"]
-fn table() {
+/// The table.
+pub fn rows() -> Rows {
     let mut rows = String::new();
     let row = |Quantiles { median, most, worst }: Quantiles| format!("{median:.2},{most:.2},{worst:.2}");
-    let solvers = ["sensor1", "sensor2"]
-        .map(|sensor| ["none", "wide"].map(|kind| Solver::new(&design(&format!("{sensor}-{kind}"))).unwrap()));
+    let solvers: Vec<Solver> = DESIGNS.iter().map(|name| Solver::new(&design(name))).collect::<Result<_, _>>()?;
     for kind in Kind::all() {
-        let count = if has_own_friction(kind) { 2000 } else { 200 };
-        for (number, [line, wide]) in solvers.iter().enumerate() {
-            let frames = kind.frames(wide.matrices().sensor(), 0.5, 1000..1000 + count).unwrap();
-            let [line, wide] = [line, wide].map(|solver| judge(solver, &frames));
-            let Torques { place, along, beside, about_middle, own, is } = wide;
+        for (index, solvers) in solvers.chunks(2).enumerate() {
+            let [line, wide] = [&solvers[0], &solvers[1]];
+            let frames = contact_kinds::frames(wide.matrices().sensor(), kind, 0.5)?;
+            let line = judge(line, &frames)?;
+            let Torques { place, along, beside, about_middle, own, is } = judge(wide, &frames)?;
             let [line, about_middle, own, place] = [line.about_middle, about_middle, own, place].map(row);
-            let (sensor, own_true, beside) = (number + 1, is.median, beside.median);
+            let (sensor, own_true, beside) = (index + 1, is.median, beside.median);
             // Writing to a String cannot fail.
             let _ = writeln!(
                 rows,
@@ -103,7 +83,34 @@ fn table() {
             );
         }
     }
-    let columns = "sensor,kind,line_tz_median,line_tz_p95,line_tz_worst,tz_median,tz_p95,tz_worst,own_median,own_p95,own_worst,\
-                   own_true,place_median,place_p95,place_worst,along,beside";
-    renew_table("torques.csv", &["sensor1-none", "sensor1-wide", "sensor2-none", "sensor2-wide"], columns, &rows);
+    Ok(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Within the grid a contact's place is known to a fraction of the pitch, and `T_z` to what the tangential force errs by times
+    /// its arm.
+    #[test]
+    fn torques_are_near_the_true_ones_on_every_kind() {
+        let solver = Solver::new(&design("sensor2-wide")).expect("matrices");
+        for kind in Kind::all() {
+            let frames = kind.frames(solver.matrices().sensor(), 0.5, 0..8).expect("frames");
+            let Torques { place, along, beside, about_middle, own, is } = judge(&solver, &frames).expect("forces");
+            let said = format!("{}: {place:?} {along} {beside:?} {about_middle:?} {own:?} {is:?}", kind.title());
+            // Too far along the push, and hardly anything else.
+            if kind == Kind::Sliding {
+                assert!((0.4..0.7).contains(&along) && beside.median < 0.25, "{said}");
+            }
+            match kind {
+                Kind::Border | Kind::Mixed => {}
+                // What turns about its own axis presses and pulls as what does not.
+                Kind::Spinning => {
+                    assert!(place.median < 0.8 && own.median > 0.9 * is.median && is.median > 0.5, "{said}");
+                }
+                _ => assert!(place.median < 0.8 && about_middle.median < 0.6 && own.median < 0.3, "{said}"),
+            }
+        }
+    }
 }

@@ -1,14 +1,29 @@
-//! The rows of `results/several-contacts.csv`, errors in percent of the normal force.
+//! Several contacts, separated in software: errors in percent of the normal force.
 
 use std::fmt::Write;
 
 use golden::metrics::Quantiles;
 use golden::scene::SceneFrame;
-use golden::solver::Solver;
+use golden::solver::{Solver, SolverError};
 
-use super::kinds::{Kind, frame};
-use super::{clipped, design, judge};
-use crate::designs::renew_table;
+use super::kinds::{Kind, clipped, frame, judge};
+use super::{Rows, design};
+
+/// The columns of [`rows`].
+pub const COLUMNS: &str = "sensor,frames,training_set,quantity,median,p95,worst,right";
+/// The designs of the table.
+pub const DESIGNS: [&str; 6] =
+    ["sensor1-fast", "sensor1-wide", "sensor1-clipped-wide", "sensor2-fast", "sensor2-wide", "sensor2-clipped-wide"];
+
+/// The solvers of a design: of one contact, and of several.
+fn solvers(name: &str) -> Result<[Solver; 2], SolverError> {
+    let with = |contacts| {
+        let mut design = design(name);
+        design.algorithm.contacts = contacts;
+        Solver::new(&design)
+    };
+    Ok([with(1)?, with(4)?])
+}
 
 /// Adds the rows of one kind of frames, solved as one contact and with each contact separated.
 fn add_rows(rows: &mut String, [sensor, label, training_set]: [&str; 3], solvers: &[Solver; 2], frames: &[SceneFrame]) {
@@ -32,8 +47,8 @@ fn add_rows(rows: &mut String, [sensor, label, training_set]: [&str; 3], solvers
     }
 }
 
-/// Kinds of the first table, and of those of single designs.
-const KINDS: [(Kind, &str); 19] = [
+/// All kinds, as tables call them.
+pub const KINDS: [(Kind, &str); 19] = [
     (Kind::Same, "two, pushed the same way"),
     (Kind::Opposed, "two, opposed"),
     (Kind::Anyhow, "two, anyhow"),
@@ -55,18 +70,17 @@ const KINDS: [(Kind, &str); 19] = [
     (Kind::Wide, "one to three general ones"),
 ];
 
-#[test]
-#[ignore = "writes results/several-contacts.csv; minutes"]
-fn table() {
+/// The table.
+pub fn rows() -> Rows {
     let mut rows = String::new();
     for sensor in ["sensor1", "sensor2"] {
+        let solvers =
+            [("sliding", solvers(&format!("{sensor}-fast"))?), ("general", solvers(&format!("{sensor}-wide"))?)];
         for (kind, label) in KINDS {
-            let geometry = design(&format!("{sensor}-fast"), 1).sensor;
-            let frames: Vec<SceneFrame> = (0..100).map(|seed| frame(&geometry, kind, 3000 + seed)).collect();
-            for (name, training_set) in [("fast", "sliding"), ("wide", "general")] {
-                let solvers =
-                    [1, 4].map(|contacts| Solver::new(&design(&format!("{sensor}-{name}"), contacts)).unwrap());
-                add_rows(&mut rows, [sensor, label, training_set], &solvers, &frames);
+            let geometry = solvers[0].1[0].matrices().sensor();
+            let frames: Vec<SceneFrame> = (3000..3100).map(|seed| frame(geometry, kind, seed)).collect();
+            for (training_set, solvers) in &solvers {
+                add_rows(&mut rows, [sensor, label, training_set], solvers, &frames);
             }
         }
     }
@@ -75,15 +89,11 @@ fn table() {
         other => !matches!(other, Kind::Row | Kind::Heavier(_) | Kind::Wide),
     };
     for sensor in ["sensor1", "sensor2"] {
-        let solvers = [1, 4].map(|contacts| Solver::new(&design(&format!("{sensor}-clipped-wide"), contacts)).unwrap());
+        let solvers = solvers(&format!("{sensor}-clipped-wide"))?;
         for (kind, label) in KINDS.into_iter().filter(|(kind, _)| shown(kind)) {
-            let frames = clipped::frames(solvers[0].matrices().sensor(), kind, 3000..3100);
+            let frames = clipped(solvers[0].matrices().sensor(), kind, 3000..3100);
             add_rows(&mut rows, [sensor, label, "\"general, clipped\""], &solvers, &frames);
         }
     }
-    let names = ["fast", "wide", "clipped-wide"];
-    let names: Vec<String> =
-        ["sensor1", "sensor2"].iter().flat_map(|sensor| names.map(|name| format!("{sensor}-{name}"))).collect();
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    renew_table("several-contacts.csv", &names, "sensor,frames,training_set,quantity,median,p95,worst,right", &rows);
+    Ok(rows)
 }

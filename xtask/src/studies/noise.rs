@@ -6,15 +6,17 @@ use std::ops::{Range, RangeInclusive};
 use golden::design::{Design, Input};
 use golden::estimators::joint::TrainingSet;
 use golden::metrics::Quantiles;
-use golden::scene::{Kind, SceneError, SceneFrame, bound, normal};
+use golden::scene::{Kind, SceneFrame, bound, normal};
 use golden::smoothing::{Average, Smoothing};
 use golden::solver::{Solver, SolverError};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
+use super::{Rows, shear_error};
+
 /// Standard deviations of a reading in percent of the frame's largest.
-pub const NOISE_PERCENT: [f64; 5] = [0.0, 0.2, 0.5, 1.0, 2.0];
+const NOISE_PERCENT: [f64; 5] = [0.0, 0.2, 0.5, 1.0, 2.0];
 /// Friction of the contacts.
 const FRICTION: f64 = 0.5;
 /// A contact each, which no calibration draws.
@@ -29,22 +31,8 @@ const SMOOTHING: RangeInclusive<u32> = 0..=8;
 /// Frames of a contact from the first one on: the average of the slowest has forgotten all but 1 % of it.
 const FRAMES: usize = 1200;
 
-/// Why there is no table.
-#[derive(Debug, thiserror::Error)]
-pub enum NoiseError {
-    /// The sensor is too deep or too shallow for scenes.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// The sensor's matrices, or a frame.
-    #[error(transparent)]
-    Solver(#[from] SolverError),
-    /// A step of load that does not tell creep.
-    #[error("{0}")]
-    Creep(String),
-}
-
 /// What the design's sensor reads of stresses in pascals, with noise in percent of the largest reading.
-pub(crate) fn noisy(design: &Design, stress: &[f64], percent: f64, random: &mut ChaCha8Rng) -> Vec<f64> {
+pub fn noisy(design: &Design, stress: &[f64], percent: f64, random: &mut ChaCha8Rng) -> Vec<f64> {
     let mut stress = stress.to_vec();
     let tension = design.input.tension;
     let largest = stress.iter().fold(0.0_f64, |largest, stress| largest.max(tension.of(*stress).abs()));
@@ -62,8 +50,7 @@ fn errors(design: &Design, frames: &[SceneFrame], percent: f64) -> Result<Quanti
     let mut errors = Vec::new();
     for frame in frames.iter().flat_map(|frame| std::iter::repeat_n(frame, DRAWS)) {
         let found = solver.solve(&noisy(design, &frame.stress, percent, &mut random))?.resultant;
-        let [x, y] = [0, 1].map(|axis| found[axis] - frame.force[axis]);
-        errors.push(100.0 * x.hypot(y) / frame.force[2].abs());
+        errors.push(shear_error(found, frame.force));
     }
     Ok(Quantiles::of(errors))
 }
@@ -99,9 +86,7 @@ fn smoothed(
             }
         }
         let error = |(_, _, last): &(Option<Smoothing>, Average, Vec<f64>)| {
-            let found = solver.solve(last)?.resultant;
-            let [x, y] = [0, 1].map(|axis| found[axis] - frame.force[axis]);
-            Ok(100.0 * x.hypot(y) / frame.force[2].abs())
+            Ok(shear_error(solver.solve(last)?.resultant, frame.force))
         };
         averages.iter().map(error).collect()
     };
@@ -114,11 +99,7 @@ pub const SMOOTHING_COLUMNS: &str = "design,noise,k,frames,median,p95,bound";
 
 /// The table of smoothing of some designs, each with the bound of the median error on its sensor. A design with `smoothing`,
 /// which is trained for it, is measured at its own noise: averaged as it says, and on single frames, as a restart leaves them.
-///
-/// # Errors
-///
-/// [`NoiseError`]: a sensor without matrices or scenes.
-pub fn smoothing_rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
+pub fn smoothing_rows(designs: &[(String, Design)]) -> Rows {
     let mut text = String::new();
     for (name, design) in designs {
         let [bound, _] = bound(&design.sensor, FRICTION, SEEDS)?;
@@ -145,11 +126,7 @@ pub const COLUMNS: &str = "design,noise,median,p95,worst,bound,bound_p95";
 
 /// The table of some designs, which go by the names of their files, each with the bound of median and 95 % on its sensor.
 /// A design that is trained on contacts of any kind has rows of mixed ones too, without a bound.
-///
-/// # Errors
-///
-/// [`NoiseError`]: a sensor without matrices or scenes.
-pub fn rows(designs: &[(String, Design)]) -> Result<String, NoiseError> {
+pub fn rows(designs: &[(String, Design)]) -> Rows {
     let mut text = String::new();
     for (name, design) in designs {
         let frames = Kind::Sliding.frames(&design.sensor, FRICTION, SEEDS)?;
