@@ -2,6 +2,8 @@
 // Part of the SpTFRA hardware generator.
 //
 // Raster counter over the taxels of a grid, up to two a step. It gives each taxel's orbit and image.
+//
+// Latency from step to orbit and image: 1 cycle. Interval: 1 cycle.
 
 `default_nettype none
 

@@ -5,6 +5,9 @@
 //
 // Three stages, each with its own frame (sptfra_joint_stages): search, feature window (with NETWORK) and correction.
 // u_q of the next frame may arrive meanwhile.
+//
+// Latency of the stages: EXPECTED_SEARCH_LATENCY, EXPECTED_FEATURES_LATENCY, and 11 cycles (with NETWORK), those of the
+// network and of the friction. Interval: that of the longest stage.
 
 `default_nettype none
 

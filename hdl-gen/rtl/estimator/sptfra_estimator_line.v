@@ -6,6 +6,8 @@
 // Two stages, each with its own frame: the line in the (mu_x, mu_y) plane, then the search along it. The search
 // begins when the frame's u_q are in its cells. The answer is the free component t and the line: the other component
 // is other + slope * free.
+//
+// Latency of the stages: EXPECTED_LINE_LATENCY and EXPECTED_SEARCH_LATENCY. Interval: that of the longer one.
 
 `default_nettype none
 

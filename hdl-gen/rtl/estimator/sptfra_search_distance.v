@@ -5,6 +5,8 @@
 //
 // A bit is kept where `keep` is high and the distance with it is less than `room`. A round has up to three points:
 // with its bit (middle), with the next bit too (above), with the next bit alone (below).
+//
+// Latency from over to distance: 1 cycle. Interval: a round, of two cycles or more.
 
 `default_nettype none
 

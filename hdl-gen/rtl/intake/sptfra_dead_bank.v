@@ -9,6 +9,8 @@
 //
 // Words that are out of bounds are not written. A commit checks what depends on several words. Numbers ascend, a dead
 // taxel has no weight in any sum, and no sum of weights exceeds its accumulator.
+//
+// Latency from command to word and from read_taxel to its weights: 1 cycle. Interval: 1 cycle.
 
 `default_nettype none
 

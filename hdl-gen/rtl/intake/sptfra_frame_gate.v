@@ -6,6 +6,8 @@
 //
 // A frame begins while nothing of another one is in the pipeline and there is room. Beats of a frame of a wrong length
 // are taken up to its TLAST and marked.
+//
+// Latency from a beat to its stage k: k cycles. Interval: a beat a cycle, a frame in BEATS + STAGES + 1 cycles.
 
 `default_nettype none
 
