@@ -251,8 +251,8 @@ int sptfra_decode_and_separate(const sptfra_shape *shape, const void *words, con
 /* Gain and offset (in counts) of each taxel, as in a design's calibration.csv: gains 1e-9 to 16, offsets to 1e6. A gain of
  * 0 reads 0: for taxels that the design or the map replaces, SPTFRA_OUT_OF_RANGE for others of a core with a map. With a
  * noise floor above 0, in Pa, it is that of the frames and of a tare, and the threshold of contact is as many times it as
- * there are taxels, as of a design made with it; else both stay. Writes the bank that does not act, has its CRC compared and the bank act from the next
- * frame on; frames may run. On any error what acted still does. */
+ * there are taxels, as of a design made with it; else both stay. Writes the bank that is not active, has its CRC compared
+ * and makes it active from the next frame on; frames may run. On any error the active bank stays. */
 int sptfra_load_calibration(
     const sptfra *device, const double *gain, const double *offset, double noise_floor_pa, uint32_t polls);
 /* Dead taxels, ascending, and the weights of all taxels in the stress of each, one after the other: the columns of a

@@ -50,7 +50,7 @@ def read(path):
     """The frames of a file; the numbers of its columns, as pandas writes them above, are none."""
     frames = np.loadtxt(path, delimiter=",", ndmin=2)
     if frames.shape[1] > 3 and any(np.array_equal(frames[0], first + np.arange(frames.shape[1])) for first in (0, 1)):
-        print("line 1: the columns' numbers: taken for a header", file=sys.stderr)
+        print("line 1: the columns' numbers: read as a header", file=sys.stderr)
         return frames[1:]
     return frames
 

@@ -184,7 +184,7 @@ class Sptfra:
         offsets are in pascals: they stand in the same file, or in that of the design's curve, `curve`. `noise_floor_pa` is
         then that of the frames and of a tare, and the threshold of contact as many times it as there are taxels, as of a
         design made with it; without it both stay. What is written is compared by its CRC. Raises ValueError on a file or
-        values that no bank takes, RuntimeError if the core refuses, TimeoutError; then what acted still does.
+        values that no bank takes, RuntimeError if the core refuses, TimeoutError; then the active bank stays.
         """
         self._needs_calibration()
         # What is kept of the active bank is read from it, and reads 0 while it changes.

@@ -60,7 +60,7 @@ static int next_frame(source *frames, const sptfra_shape *shape, void *words)
         }
         frames->seen = 1;
         if (first && text_numbers_columns(start, taxels)) {
-            fprintf(stderr, "line %lu: the columns' numbers: taken for a header\n", frames->number);
+            fprintf(stderr, "line %lu: the columns' numbers: read as a header\n", frames->number);
             continue;
         }
         frames->good = text_parse(shape, start, frames->number, words);

@@ -329,7 +329,7 @@ pub(super) fn worth(unit: &str, target: &Target, sign: f64) -> Result<(Option<f6
         }
         Some(_) if target.counts => (None, Some(format!("{gives}; the design says what a value is worth"))),
         None if target.counts => (None, None),
-        None => (None, Some(format!("{gives}, which is no known pressure: values are taken for pascals"))),
+        None => (None, Some(format!("{gives}, which is no known pressure: values are read as pascals"))),
         Some(1.0) => (None, None),
         Some(pascals) => {
             let presses = if sign < 0.0 { "pressure presses, so that " } else { "" };

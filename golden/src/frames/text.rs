@@ -238,7 +238,7 @@ impl Lines {
     /// Says that a line was taken for the numbers of the columns.
     fn numbered(&mut self, last: f64) {
         self.remark(&format!(
-            "numbers up to {last} are those of the columns, as pandas writes them; the line is taken for a header"
+            "numbers up to {last} are those of the columns, as pandas writes them; the line is read as a header"
         ));
     }
 
@@ -379,7 +379,7 @@ pub(super) fn read(mut lines: Lines, bytes: &[u8]) -> Result<Text, FrameError> {
         lines.cells.number = text.lines[0];
         match is_head.iter().take_while(|&&is_head| is_head).count() {
             1 => lines.numbered(magnitude(&text.rows[0])),
-            heads => lines.remark(&format!("a word where other lines have a number: {heads} lines taken for a header")),
+            heads => lines.remark(&format!("a word where other lines have a number: {heads} lines read as a header")),
         }
         let mut kept = is_head.iter().map(|is_head| !is_head).cycle();
         text.rows.retain(|_| kept.next() == Some(true));

@@ -208,7 +208,7 @@ fn numbers_of_columns_are_a_header() {
         assert_eq!(frames, std::slice::from_ref(&frame), "{text:?}");
         let remark = remark.expect("a remark");
         let said = format!("frames.csv, line {place}: numbers up to {last} are those of the columns");
-        assert!(remark.contains(&said) && remark.contains("taken for a header"), "{remark}");
+        assert!(remark.contains(&said) && remark.contains("read as a header"), "{remark}");
     }
     // Any other frame is one, and so is a later one.
     for text in [

@@ -9,8 +9,8 @@
 // candidates of the next bisection too, and finds two bits of the same answer. CELLS cells with up to CELL_ELEMENTS
 // taxels each work side by side. t has 16 fraction bits.
 //
-// Latency from start to done: 6 n + 2 d + 9 + R (n + d + 1) + (R - 1) max(2 n, n + d + 1) cycles. n: CELL_ELEMENTS;
-// R: 17 rounds, or 9 with three points; d: cycles from a round's last taxel to its decision. Interval: the same.
+// Latency from start to done: 6n + 2d + 9 + R(n + d + 1) + (R - 1) max(2n, n + d + 1) cycles, n being CELL_ELEMENTS.
+// R: 17 rounds, or 9 with three points. d: cycles from a round's last taxel to its decision. Interval: the same.
 
 `default_nettype none
 

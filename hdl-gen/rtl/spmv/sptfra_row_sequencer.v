@@ -3,7 +3,7 @@
 //
 // Row sequencer of a sparse matrix-vector PE: marks the first and the last product of every row.
 //
-// Walks a ROM with one word a row, {kind[1:0], macs[13:0]} with macs >= 1 products. The ROM is outside and
+// Reads a ROM with one word a row, {kind[1:0], macs[13:0]} with macs >= 1 products. The ROM is outside and
 // registered: row_word is the word at the row_address of the last cycle with row_fetch. One product a cycle, rows
 // of one product back to back included; first, last and kind belong to the same cycle as issue.
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// One SpMV PE: walks its own MCSR ROMs (values, columns, MACs per row), one multiply-accumulate a cycle in each of
+// One SpMV PE: reads its own MCSR ROMs (values, columns, MACs per row), one multiply-accumulate a cycle in each of
 // its channels. Four channels take the parity components of the operand: same row, same column, own coefficient.
 //
 // Issue to result register: 7 cycles (ROM, address, operand memory, 3 for the MAC, carry). Initiation interval: 1.

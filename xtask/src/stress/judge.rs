@@ -69,7 +69,8 @@ pub fn judge(
 /// Takes the packets before this one that were dropped from those that were sent, up to one that was not.
 ///
 /// # Errors
-/// One was dropped though the door, where two wait, had room: fewer than two that began before it had no answer yet.
+/// One was dropped though the ingress FIFO, two frames deep, had room: fewer than two that began before it had no answer
+/// yet.
 fn drop_before(
     packet: usize,
     sent: &mut Range<usize>,

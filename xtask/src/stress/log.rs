@@ -130,7 +130,7 @@ impl<'a> Banks<'a> {
         Ok(())
     }
 
-    /// What a tare of frames behind each other, before a packet, makes of the bank that acts: the one with this CRC.
+    /// What a tare of frames behind each other, before a packet, makes of the active bank: the one with this CRC.
     fn tared(&self, frames: usize, crc: u32, before: usize) -> Option<Bank> {
         let first = before.saturating_sub(TARE_REACH);
         (first..before).rev().find_map(|packet| self.tared_with(&mut vec![packet], frames, crc, before))

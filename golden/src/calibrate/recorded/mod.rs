@@ -1,6 +1,6 @@
 //! Constants from recordings: what a count is worth, and what each taxel's is, from frames with measured forces.
 //!
-//! A recording is parted into contacts and holds ([`holds`]). The normal force of a hold is a weighted sum of its stress
+//! A recording is separated into contacts and holds ([`holds`]). The normal force of a hold is a weighted sum of its stress
 //! ([`rows`]), so that the curve of counts ([`shape`]) and the taxels' gains ([`gains`]) are linear least squares each, in
 //! turns. What is chosen, the curve's kind and how smooth the gains are, is chosen by cross-validation that leaves whole
 //! places out, the simplest that is as good as the best. What it does not better is not fitted.

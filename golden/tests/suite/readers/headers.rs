@@ -69,7 +69,7 @@ fn a_header_of_sensor_numbers_is_none_of_the_frames() {
     let labelled = LINES.replace("-7.5", "0,-7.5").replace("-8", "1,-8");
     for above in ["x (mm),0,4,8,0,4,8\ny (mm),0,0,0,4,4,4\n", "min,0,0,0,0,0,0\nmax,4095,4095,4095,4095,4095,4095\n"] {
         let found = both(read(&format!("{above}{labelled}"), 1));
-        assert!(found.remark.unwrap().contains("2 lines taken for a header"), "{above}");
+        assert!(found.remark.unwrap().contains("2 lines read as a header"), "{above}");
     }
     // Frames whose values happen to rise or to fall are frames, and so are those with words as labels.
     for rising in ["1,2,3,4,5,7\n1,2,3,4,6,9\n", "7,5,4,3,2,1\n9,6,4,3,2,1\n", "20,3,5,12,11,7\n20,3.5,5,12,11,7\n"] {

@@ -34,7 +34,7 @@ const BAD_FRAME: u32 = 1 << 4;
 const CONTRADICTION: u32 = 1 << 5;
 /// Of `CALIBRATION_STATUS`.
 const STATUS_BUSY: u32 = 1 << 9;
-/// `CALIBRATION_INDEX`: of the bank that acts.
+/// `CALIBRATION_INDEX`: of the active bank.
 const ACTIVE: u32 = 1 << 31;
 
 struct Subject {
@@ -115,7 +115,7 @@ fn wait(core: &mut Controlled) {
     panic!("busy for ever");
 }
 
-/// Reads a bank word by word: the one that acts, or the other.
+/// Reads a bank word by word: the active one, or the other.
 fn read_back(core: &mut Controlled, active: bool) -> Vec<u32> {
     let words = core.read(address::CALIBRATION).expect("a reply") & 0xFFFF;
     (0..words)

@@ -127,7 +127,7 @@ fn the_examples_say_what_is_wrong() {
     );
     let numbers = said(&bash(desk.path(), &numbers.replace("CORE", &core.display().to_string())));
     assert_eq!(numbers.matches("\n0,0,0,0,0,0,").count(), 2, "{numbers}");
-    assert_eq!(numbers.matches("taken for a header\n").count(), 2, "{numbers}");
+    assert_eq!(numbers.matches("read as a header\n").count(), 2, "{numbers}");
 
     let bare = bash(desk.path(), &format!("{examples}/bare_metal_simulated {}", core.display()));
     let lines = said(&bare);

@@ -181,9 +181,9 @@ fn a_frame_is_dropped_a_cycle_below_the_interval() {
     });
 }
 
-/// The door's decisions against a model of when there is room. While the core is never without work, a frame leaves the
-/// door the same number of cycles before its answer ends; with that one number, whatever it is, every decision is the one
-/// that two frames at the door give.
+/// The ingress FIFO's decisions against a model of when there is room. While the core is never without work, a frame
+/// leaves the FIFO the same number of cycles before its answer ends. With that one number, whatever it is, every decision
+/// is the one that two frames in the FIFO give.
 fn explained(plan: &Plan, cycles: u64, outcome: &Outcome) {
     // Until every buffer is full frames go faster.
     const FULL: usize = 8;
