@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use golden::design::{Design as Checked, Estimator, Samples, Tension};
 use golden::output::write_together;
 use golden::resolved::Resolved;
+use golden::tune_filter::rebase;
 use golden::words;
 use hdl_gen::new_design::NewDesign;
 use pyo3::prelude::*;
@@ -141,9 +142,13 @@ impl Design {
     }
 
     fn save(&self, path: PathBuf) -> PyResult<()> {
+        let mut design = self.inner.clone();
+        if let Some(source) = &self.source {
+            rebase(&mut design, source, &path);
+        }
         let inputs = self.source.as_deref().map_or_else(|| Ok(Vec::new()), Checked::inputs_at).map_err(raised)?;
-        let resolved = Resolved::beside(&self.inner, &inputs, &path).map_err(raised)?;
-        write_together(&resolved.contents(&self.inner, "Written by Design.save of the Python package.")).map_err(raised)
+        let resolved = Resolved::beside(&design, &inputs, &path).map_err(raised)?;
+        write_together(&resolved.contents(&design, "Written by Design.save of the Python package.")).map_err(raised)
     }
 
     #[getter]

@@ -53,6 +53,15 @@ class Designs(unittest.TestCase):
             with self.assertRaisesRegex(sptfra.Error, "would overwrite the input"):
                 again.save(file)
 
+    def test_a_saved_design_finds_its_scenes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file, saved = Path(folder) / "pad.toml", Path(folder) / "tried" / "pad.toml"
+            saved.parent.mkdir()
+            filtered = design('[algorithm]\nplan = "paper"\nfilter = { kind = "f3", scenes = ["a.toml"] }\n')
+            file.write_text(filtered.to_toml(), encoding="utf-8")
+            sptfra.Design.load(file).save(saved)
+            self.assertIn('"../a.toml"', saved.read_text(encoding="utf-8"))
+
     def test_what_is_wrong_is_said_as_the_commands_say_it(self):
         for call, text in [
             (lambda: sptfra.Design.load("nothing.toml"), "nothing.toml: cannot read the file"),

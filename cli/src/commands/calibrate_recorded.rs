@@ -7,13 +7,13 @@ use golden::calibrate::recorded::{
 };
 use golden::check::check;
 use golden::creep::Creep;
-use golden::design::{Design, Filter};
+use golden::design::Design;
 use golden::matrices::Matrices;
 use golden::numbers::counted;
 use golden::output::write_together;
 use golden::progress::Progress;
-use golden::resolved::{Resolved, folder, keep_apart};
-use golden::tune_filter::rebase_scenes;
+use golden::resolved::{Resolved, keep_apart};
+use golden::tune_filter::rebase;
 use serde::Serialize;
 use testbench::calibration_page::page;
 
@@ -150,9 +150,7 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
     design.input.creep = found_creep.map(|found| found.creep).or(own);
     drop(progress);
     warn(&findings.unwrap_or_default());
-    if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
-        *scenes = rebase_scenes(scenes, folder(path), folder(out));
-    }
+    rebase(&mut design, path, out);
     let mut contents = resolved.contents(&design, "Calibrated by `sptfra calibrate` from recordings.");
     if let Some(page_file) = page_file {
         contents.insert(0, (page_file.clone(), page(&design, results.each_ref().map(Option::as_ref))));

@@ -13,27 +13,14 @@ use crate::message::{self, json_or};
 
 const EXAMPLE: &str = "Example:\n  sptfra export-calibration pad --out pad.bank.csv";
 
-const BANK_FILE: &str = r#"BANK.csv: a header line, gain,offset,taxel 37,taxel 38, that names the dead taxels; then a line for each taxel: its gain
-(0 of a dead one), its offset in counts, and its weight in the stress of each dead taxel. Of a design with a curve offsets
-are in pascals, and a header count,pascals and its points follow. A design can name the file, as sensor.calibration and as
-sensor.curve.
-
-In the design file:
-  [sensor]
-  calibration = "calibration.csv"   # a line gain,offset for each taxel, such as sptfra calibrate writes; gain 0: dead
-  dead = { taxels = [37, 38], room = 8 }  # others that read nothing; dead taxels for which a bank has room: 1, 2, 4 or 8
-
-  [hardware]
-  control = true
-  calibration = "ram"
-"#;
+const BANK_FILE: &str = include_str!("../help/export-calibration.txt");
 
 /// Writes the calibration that a board loads into its bank, as CSV.
 ///
 /// For a design with [hardware] calibration = "ram": each taxel's gain and offset. With `room` for dead taxels, also its
 /// weights in their stress. `load_calibration` of the Python driver reads the file. Nothing is synthesized again.
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{BANK_FILE}"))]
+#[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{}", BANK_FILE.trim_end()))]
 pub struct Args {
     /// Design file (TOML), with the calibration and the dead taxels of today.
     #[arg(value_parser = design_file())]

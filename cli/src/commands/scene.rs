@@ -16,44 +16,7 @@ use crate::message::{self, json_or};
 
 const EXAMPLE: &str = "Example:\n  sptfra scene scenes/sensor1-hertz.toml --out frames.csv\n  sptfra scene --design pad --kind held --out held.csv";
 
-const SCENE_FILE: &str = r#"Scene file:
-  [sensor]                          # as in the design file
-  columns = 10
-  rows = 10
-  pitch_mm = [4.0, 2.0]
-  depth_mm = 3.0
-  taxel_mm = [3.0, 1.5]             # optional: sides of the part of its cell over which a taxel averages
-
-  [medium]
-  kind = "bonded_layer"             # on a rigid ground, with poisson; or "half_space" without
-  poisson = 0.49
-
-  [[contact]]                       # one table for each contact; their stresses add up
-  shape = "hertz"                   # ellipse: semi_axes_mm; "rectangle", uniform: sides_mm;
-  semi_axes_mm = [7.0, 7.0]         # "disc", uniform, and "punch", flat and rigid: radius_mm
-  centre_mm = [18.0, 9.0]           # from the first taxel
-  normal_force_n = 6.0              # positive when pressing
-  friction = 0.5                    # tangential over normal force
-  direction_deg = 30.0              # of the tangential force, from x towards y
-  turn_deg = 25.0                   # optional, and so are all below: the shape's axes, from x towards y
-  edge = 2.0                        # pressure (1 - rho^2)^edge: soft above 0.5, Hertz's; even at 0; hard below
-  tilt = [0.6, 0.0]                 # of the pressure along and across the push: times 1 + 0.6 u/a + 0 v/b
-  shear = "sliding"                 # friction times pressure; with spin = 1.0 it turns, too, at its edge as fast as it
-                                    # slides. Or "even", the same everywhere; or "held" (shape "hertz"), Mindlin's
-                                    # partial slip, with held = 0.5, the share of the largest tangential force
-
-  [sweep]                           # optional: one frame for each direction, which is
-  direction_deg = { from = 0, to = 350, step = 10 } # added to those of the contacts
-
-  [sensor_errors]                   # optional, and so is every key; applied in this order
-  depth = 0.05                      # share by which the layer is deeper than depth_mm says
-  seed = 1                          # of gains and noise
-  gain_spread = 0.01                # standard deviation of the taxels' gains around 1
-  noise = 0.002                     # standard deviation, share of the frame's largest stress
-  quantisation_bits = 12            # of a converter with the range full_scale_pa
-  full_scale_pa = 100000.0
-  dead = [37]                       # taxels that read 0
-  saturated = [58]                  # taxels that read minus full_scale_pa"#;
+const SCENE_FILE: &str = include_str!("../help/scene.txt");
 
 /// Makes frames of stress from contacts with known forces.
 ///
@@ -63,7 +26,7 @@ const SCENE_FILE: &str = r#"Scene file:
 /// With --design alone: a round contact in the middle of the design's sensor, friction 0.5, in 36 directions. With --kind
 /// too: contacts that the calibration may not have seen, to test an estimator on.
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{SCENE_FILE}"))]
+#[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{}", SCENE_FILE.trim_end()))]
 pub struct Args {
     /// Scene file (TOML).
     #[arg(required_unless_present = "design")]

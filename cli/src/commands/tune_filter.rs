@@ -9,7 +9,7 @@ use golden::output::write_together;
 use golden::progress::Progress;
 use golden::resolved::{Resolved, folder, keep_apart};
 use golden::table::Table;
-use golden::tune_filter::{Choice, candidate_count, rebase_scenes, reference_frames, tune_filter};
+use golden::tune_filter::{Choice, candidate_count, rebase, reference_frames, tune_filter};
 use serde::Serialize;
 
 use crate::arguments::design_file;
@@ -17,16 +17,7 @@ use crate::message::{self, json_or, say};
 
 const EXAMPLE: &str = "Example:\n  sptfra tune-filter pad --out tuned.toml";
 
-const CHOOSE_FILES: &str = r#"In the design file:
-  [algorithm]
-  filter = { kind = "f3", scenes = ["../scenes/sensor1-hertz.toml"] } # relative to the design file
-
-In RESOLVED.toml, besides:
-  [algorithm.filter.choices]        # "none", "f1 l=40" or "f2 p=30" for each of the 13 matrices
-  C33inv = "f2 p=30"
-
-Columns of CANDIDATES.csv: matrix, filter, entries kept (Nnz), error of the friction coefficient in
-percent (e_mu, mean over the frames), e_mu * Nnz, and 1 for the candidate chosen, else 0."#;
+const CHOOSE_FILES: &str = include_str!("../help/tune-filter.txt");
 
 /// Tunes the filter of each matrix for a design with filter f3.
 ///
@@ -34,7 +25,7 @@ percent (e_mu, mean over the frames), e_mu * Nnz, and 1 for the candidate chosen
 /// of the design's reference scenes. Chooses the least product of friction error and entries kept. Hardware is then
 /// generated from RESOLVED.toml without a search.
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{CHOOSE_FILES}"))]
+#[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{}", CHOOSE_FILES.trim_end()))]
 pub struct Args {
     /// Design file (TOML).
     #[arg(value_parser = design_file())]
@@ -84,8 +75,8 @@ pub fn run(args: &Args) -> message::Result {
     drop(progress);
 
     let before = design.algorithm.clone();
-    design.algorithm.filter =
-        Filter::F3 { scenes: rebase_scenes(&scenes, from, folder(out)), choices: Some(Box::new(choice.choices())) };
+    design.algorithm.filter = Filter::F3 { scenes, choices: Some(Box::new(choice.choices())) };
+    rebase(&mut design, path, out);
     design.algorithm.take_errors(&before);
     let remark = "Resolved by `sptfra tune-filter`: the filter of each matrix is chosen by the scenes named here.";
     let mut contents = resolved.contents(&design, remark);

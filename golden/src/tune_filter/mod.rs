@@ -6,7 +6,7 @@
 
 mod scenes;
 
-pub use scenes::{rebase_scenes, reference_frames};
+pub use scenes::{rebase, reference_frames};
 
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};

@@ -3,6 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use crate::design::{Design, Filter};
+use crate::resolved::folder;
 use crate::scene::{Scene, SceneError, SceneFrame};
 
 /// Computes the frames of the reference scenes of a design; their paths are relative to `folder`, that of the design
@@ -46,8 +47,15 @@ pub fn reference_frames(design: &Design, folder: &Path) -> Result<Vec<SceneFrame
     Ok(frames)
 }
 
+/// Has a design of the file `from` name its reference scenes from the folder of the file `to`.
+pub fn rebase(design: &mut Design, from: &Path, to: &Path) {
+    if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
+        *scenes = rebase_scenes(scenes, folder(from), folder(to));
+    }
+}
+
 /// Rewrites paths of scenes that are relative to the folder `from` so that they lead to the same files from `to`.
-pub fn rebase_scenes(scenes: &[String], from: &Path, to: &Path) -> Vec<String> {
+fn rebase_scenes(scenes: &[String], from: &Path, to: &Path) -> Vec<String> {
     let (Ok(from), Ok(to)) = (from.canonicalize(), to.canonicalize()) else { return scenes.to_vec() };
     if from == to {
         return scenes.to_vec();

@@ -66,21 +66,14 @@ fn is_library(path: &str) -> bool {
 
 /// The text with the prefix before each word that names a module.
 fn with_prefix(text: &str, modules: &BTreeSet<&str>, prefix: &str) -> String {
+    let ends = |c: char| !c.is_ascii_alphanumeric() && c != '_';
     let mut result = String::with_capacity(text.len());
-    let mut rest = text;
-    while !rest.is_empty() {
-        let word = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
-        if word == 0 {
-            let next = rest.chars().next().map_or(0, char::len_utf8);
-            result.push_str(&rest[..next]);
-            rest = &rest[next..];
-            continue;
-        }
-        if modules.contains(&rest[..word]) {
+    // A word and what ends it, or what stands between words.
+    for piece in text.split_inclusive(ends) {
+        if modules.contains(piece.trim_end_matches(ends)) {
             result.push_str(prefix);
         }
-        result.push_str(&rest[..word]);
-        rest = &rest[word..];
+        result.push_str(piece);
     }
     result
 }

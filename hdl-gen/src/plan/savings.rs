@@ -43,8 +43,7 @@ pub fn savings(plan: &Plan) -> Vec<Saving> {
     let whole = of_products().count() * block + sums;
     let kept = of_products().map(|product| of_matrix(product.matrix)).sum::<usize>() + sums;
     // The friction products have no coefficients of their own.
-    let friction: usize =
-        plan.schedule.windows.iter().map(|window| channels * window.macs as usize).sum::<usize>() - kept;
+    let friction = plan.macs() as usize - kept;
     steps.push(Saving { step: "parity fold", macs: whole + friction, coefficients: whole });
     let mirrored = of_products().filter(|product| product.mirrored.is_some());
     let saved: usize = mirrored.map(|product| of_matrix(product.matrix)).sum();

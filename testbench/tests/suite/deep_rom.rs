@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use tempfile::TempDir;
 use testbench::tools;
 
-use crate::support::library_file;
+use crate::support::{icarus, icarus_runtime, library_file};
 
 /// A ROM of the mat's lanes, of its collector, and one whose last bank is shallow.
 const SHAPES: [(usize, u32); 3] = [(12_015, 11), (4_935, 18), (BANK + 300, 36)];
@@ -91,11 +91,11 @@ fn every_word_of_every_bank_is_read() {
     )
     .expect("a string");
     fs::write(folder.path().join("bench.v"), bench).expect("writable");
-    let mut compiler = tools::icarus().expect("installed");
+    let mut compiler = icarus();
     compiler.args(["-g2005", "-o", "bench", "-s", "bench", "bench.v", "sptfra_rom.v", "sptfra_ram.v"]);
     let compiled = compiler.current_dir(&folder).output().expect("starts");
     assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
-    let ran = tools::icarus_runtime().expect("installed").args(["-n", "bench"]).current_dir(&folder).output();
+    let ran = icarus_runtime().args(["-n", "bench"]).current_dir(&folder).output();
     let said = String::from_utf8_lossy(&ran.expect("starts").stdout).into_owned();
     let read: Vec<u128> = said.lines().filter_map(|line| u128::from_str_radix(line, 16).ok()).collect();
     assert_eq!(read.len(), depth, "{said}");

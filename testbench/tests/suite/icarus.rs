@@ -5,10 +5,9 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use crate::support::effort::some_of;
-use crate::support::{by_plan, in_parallel, planned, shipped, with_joint, with_lanes};
+use crate::support::{by_plan, icarus, icarus_runtime, in_parallel, planned, shipped, with_joint, with_lanes};
 use golden::design::{Design, Outputs, PlanKind};
 use hdl_gen::emit::emit;
-use testbench::tools;
 
 type Files = BTreeMap<String, Vec<u8>>;
 
@@ -19,7 +18,7 @@ fn emitted(design: &Design) -> Files {
 /// Compiles the design with its testbench and runs it; what it printed.
 fn simulate(name: &str, files: &Files) -> String {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut compiler = tools::icarus().expect("installed");
+    let mut compiler = icarus();
     compiler.args(["-Wall", "-g2005", "-DSIMULATION", "-o", "simulation", "-s", &format!("{name}_tb")]);
     // Strings go in with their quotes.
     let data =
@@ -38,7 +37,7 @@ fn simulate(name: &str, files: &Files) -> String {
     }
     let compiled = compiler.current_dir(&folder).output().expect("starts");
     assert!(compiled.status.success() && compiled.stderr.is_empty(), "{}", String::from_utf8_lossy(&compiled.stderr));
-    let mut runtime = tools::icarus_runtime().expect("installed");
+    let mut runtime = icarus_runtime();
     let ran = runtime.args(["-n", "simulation"]).current_dir(&folder).output().expect("starts");
     [ran.stdout, ran.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).concat()
 }

@@ -3,9 +3,8 @@
 use std::fs;
 
 use tempfile::TempDir;
-use testbench::tools;
 
-use crate::support::library_file;
+use crate::support::{icarus, icarus_runtime, library_file};
 
 /// Reads old words, a word in the cycle that writes it, it again, and one held without an enable.
 const BENCH: &str = "module bench;
@@ -51,14 +50,14 @@ fn read(simulation: bool, right: &str, wrong: &str) -> Vec<u32> {
     assert!(text.contains(right), "{right}");
     fs::write(folder.path().join("ram.v"), text.replace(right, wrong)).expect("writable");
     fs::write(folder.path().join("bench.v"), BENCH).expect("writable");
-    let mut compiler = tools::icarus().expect("installed");
+    let mut compiler = icarus();
     compiler.args(["-g2005", "-o", "bench", "-s", "bench", "bench.v", "ram.v"]);
     if simulation {
         compiler.arg("-DSIMULATION");
     }
     let compiled = compiler.current_dir(&folder).output().expect("starts");
     assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
-    let ran = tools::icarus_runtime().expect("installed").args(["-n", "bench"]).current_dir(&folder).output();
+    let ran = icarus_runtime().args(["-n", "bench"]).current_dir(&folder).output();
     let said = String::from_utf8_lossy(&ran.expect("starts").stdout).into_owned();
     said.lines().filter_map(|line| u32::from_str_radix(line.strip_prefix("read ")?, 16).ok()).collect()
 }

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::support::{by_plan, planned, shipped, workspace};
+use crate::support::{by_plan, icarus, icarus_runtime, planned, shipped, workspace};
 use golden::design::{Outputs, PlanKind};
 use hdl_gen::emit::emit;
 use testbench::tools;
@@ -57,7 +57,7 @@ fn the_netlist_gives_the_words_of_the_model() {
     cells.hold_to(&workspace("xtask/levels.toml"), update).unwrap_or_else(|longer| panic!("{longer}"));
     assert!(cells.total.longest.as_ref().is_some_and(|way| way.levels > 3), "{:?}", cells.total);
 
-    let mut compiler = tools::icarus().expect("installed");
+    let mut compiler = icarus();
     compiler.args(["-g2005-sv", "-o", "simulation", "-s", &format!("{NAME}_tb")]);
     for (parameter, file) in [("STIMULUS", "stimulus"), ("EXPECTED", "expected")] {
         compiler.arg(format!("-P{NAME}_tb.{parameter}=\"sim/{NAME}_{file}.mem\""));
@@ -66,7 +66,7 @@ fn the_netlist_gives_the_words_of_the_model() {
     compiler.arg(models()).arg(workspace("testbench/netlist/dsp48e2.v"));
     let compiled = compiler.current_dir(&folder).output().expect("starts");
     assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
-    let ran = tools::icarus_runtime().expect("installed").args(["-n", "simulation"]).current_dir(&folder).output();
+    let ran = icarus_runtime().args(["-n", "simulation"]).current_dir(&folder).output();
     let said = String::from_utf8_lossy(&ran.expect("starts").stdout).into_owned();
     assert!(said.contains("PASS: ") && !said.contains("FAIL"), "{said}");
 }

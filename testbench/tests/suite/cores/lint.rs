@@ -8,6 +8,7 @@ use testbench::tools;
 
 use super::bench::{cores, succeed};
 use crate::support::effort::half_of;
+use crate::support::icarus;
 
 /// The cores as files, and their names.
 fn written() -> Result<(TempDir, Vec<String>), Box<dyn Error>> {
@@ -26,7 +27,7 @@ fn verilator_and_icarus_have_no_warning() -> Result<(), Box<dyn Error>> {
     let (folder, names) = written()?;
     for name in &names {
         succeed(tools::verilator()?.args(["--lint-only", "-Wall", name]).current_dir(&folder))?;
-        let said = succeed(tools::icarus()?.args(["-Wall", "-g2005", "-t", "null", name]).current_dir(&folder))?;
+        let said = succeed(icarus().args(["-Wall", "-g2005", "-t", "null", name]).current_dir(&folder))?;
         assert_eq!(said, "", "{name}");
     }
     Ok(())

@@ -9,7 +9,7 @@ use hdl_gen::plan::Plan;
 use testbench::tools;
 
 use super::folder::{Folder, run, workspace, yaml};
-use crate::support::shipped;
+use crate::support::{icarus, icarus_runtime, shipped};
 
 const NAME: &str = "small_control";
 
@@ -174,11 +174,11 @@ fn the_plain_testbench_counts_with_the_core() {
     let simulate = |files: &FileMap| {
         let folder = Folder::new(files);
         let out = folder.work().join("tb");
-        let mut icarus = tools::icarus().expect("make tools was run");
+        let mut icarus = icarus();
         icarus.args(["-g2005", "-Wall", "-s", "small_control_tb", "-c", "small_control.f", "sim/small_control_tb.v"]);
         icarus.arg("-Psmall_control_tb.ROM_DIR=\"../rom/\"").arg("-o").arg(&out).current_dir(folder.design());
         run(&mut icarus).succeeded();
-        let mut vvp = tools::icarus_runtime().expect("make tools was run");
+        let mut vvp = icarus_runtime();
         run(vvp.arg("-n").arg(&out).current_dir(folder.design().join("sim")))
     };
     let mut files = control();

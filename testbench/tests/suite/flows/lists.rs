@@ -4,6 +4,7 @@ use serde_json::Value;
 use testbench::tools;
 
 use super::folder::{Folder, NAME, files, run, yaml};
+use crate::support::icarus;
 
 fn sources() -> Vec<String> {
     files(None).into_keys().filter(|path| path.starts_with("rtl/")).collect()
@@ -27,7 +28,7 @@ fn verilator_reads_the_file_list_from_anywhere() {
 #[test]
 fn icarus_reads_the_file_list() {
     let folder = Folder::small();
-    let mut icarus = tools::icarus().expect("make tools was run");
+    let mut icarus = icarus();
     let arguments = ["-g2005", "-Wall", "-t", "null", "-s", NAME, "-c", "small_4x3.f"];
     let ran = run(icarus.args(arguments).current_dir(folder.design())).succeeded();
     assert_eq!((ran.stdout, ran.stderr), (String::new(), String::new()));

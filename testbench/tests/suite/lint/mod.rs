@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 
 use self::designs::designs;
 use crate::support::effort::{self, some_of};
-use crate::support::random;
+use crate::support::{icarus, random};
 use crate::support::{in_parallel, library_folders, look_in, planned, shipped};
 use golden::design::Design;
 use hdl_gen::emit::{FileMap, Options, emit_for};
@@ -170,7 +170,7 @@ fn the_systems_verilator_accepts_every_design() {
 #[test]
 fn icarus_accepts_every_module_as_a_top() {
     assert_silent(in_parallel(&tops(&all()), |(written, modules)| {
-        let mut icarus = tools::icarus().expect("installed");
+        let mut icarus = icarus();
         icarus.args(["-Wall", "-g2005", "-t", "null"]).args(modules.iter().flat_map(|module| ["-s", module]));
         icarus.args(modules.iter().map(|module| format!("../rtl/{module}.v"))).args(written.libraries());
         vec![written.run(icarus)]
@@ -275,7 +275,7 @@ fn random_designs_are_clean() {
         verilator.args(["--quiet-stats", "--lint-only", "-Wall", "-fno-dfg", "-DSIMULATION"]);
         verilator.args(["--top-module", &written.name]);
         verilator.args(written.sources());
-        let mut icarus = tools::icarus().expect("installed");
+        let mut icarus = icarus();
         icarus.args(["-Wall", "-g2005", "-DSIMULATION", "-t", "null", "-s", &written.name]).args(written.sources());
         [verilator, icarus].map(|tool| written.run(tool)).into_iter().chain([slang(&written)]).collect()
     }));

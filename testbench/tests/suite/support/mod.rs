@@ -51,6 +51,16 @@ pub fn look_in(folders: impl IntoIterator<Item = PathBuf>) -> Vec<PathBuf> {
     folders.into_iter().flat_map(|folder| ["-y".into(), folder]).collect()
 }
 
+/// Icarus Verilog's compiler, which comes from the system.
+pub fn icarus() -> Command {
+    Command::new("iverilog")
+}
+
+/// Its simulator, which runs what the compiler wrote.
+pub fn icarus_runtime() -> Command {
+    Command::new("vvp")
+}
+
 /// The `sptfra` command among the programs of this build; built if it is not there.
 pub fn sptfra() -> PathBuf {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
