@@ -3,7 +3,6 @@ rtl/sptfra_axis_skid.v
 rtl/sptfra_butterfly.v
 rtl/sptfra_bz.v
 rtl/sptfra_cean.v
-rtl/sptfra_check_delay.v
 rtl/sptfra_check_latency.v
 rtl/sptfra_co.v
 rtl/sptfra_context_field.v
@@ -34,7 +33,6 @@ rtl/sptfra_rom.v
 rtl/sptfra_row_sequencer.v
 rtl/sptfra_samples.v
 rtl/sptfra_search.v
-rtl/sptfra_search_cell.v
 rtl/sptfra_search_cells.v
 rtl/sptfra_search_distance.v
 rtl/sptfra_spmv_array.v

@@ -18,7 +18,6 @@ foreach file {
     sptfra_butterfly.v
     sptfra_bz.v
     sptfra_cean.v
-    sptfra_check_delay.v
     sptfra_check_latency.v
     sptfra_co.v
     sptfra_context_field.v
@@ -49,7 +48,6 @@ foreach file {
     sptfra_row_sequencer.v
     sptfra_samples.v
     sptfra_search.v
-    sptfra_search_cell.v
     sptfra_search_cells.v
     sptfra_search_distance.v
     sptfra_spmv_array.v
