@@ -11,6 +11,21 @@ pub fn samples(plan: &Plan) -> u8 {
     plan.streams().sample as u8
 }
 
+/// Names of the read-only registers, from address 0 on.
+const NAMES: [&str; 11] = [
+    "identity",
+    "version",
+    "hash, low",
+    "hash, high",
+    "geometry",
+    "frame",
+    "features",
+    "clock in kHz",
+    "full scale in Pa",
+    "predicted latency",
+    "predicted interval",
+];
+
 /// A field of a read-only register, by its name in the register map's template.
 #[derive(Clone, Debug)]
 pub struct Field {
@@ -65,16 +80,9 @@ pub fn constants(plan: &Plan, hash: &str) -> Vec<Field> {
 
 /// Parameters of `sptfra_registers`.
 pub fn parameters(plan: &Plan, constants: &[Field]) -> Parameters {
-    let mut words: Vec<(u64, String)> = Vec::new();
-    for &Field { name, word, low, value } in constants {
-        let value = u64::from(value) << low;
-        match words.get_mut(word) {
-            Some((all, names)) => {
-                *all |= value;
-                *names = format!("{names}, {name}");
-            }
-            None => words.push((value, name.to_owned())),
-        }
+    let mut words = NAMES.map(|name| (0, name.to_owned()));
+    for field in constants {
+        words[field.word].0 |= u64::from(field.value) << field.low;
     }
     let drops = plan.streams().drops.into();
     let rate = plan.smoothing.as_ref().map_or(0, |of| of.rate.into());
