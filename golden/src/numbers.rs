@@ -28,6 +28,13 @@ pub(crate) fn mean(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
     sum / count.max(1) as f64
 }
 
+/// The mean place of weights, none of them below 0; `None` where all are 0.
+pub(crate) fn centre(places: impl Iterator<Item = (f64, [f64; 2])>) -> Option<[f64; 2]> {
+    let [x, y, sum] = places
+        .fold([0.0; 3], |[x, y, sum], (weight, [at_x, at_y])| [x + weight * at_x, y + weight * at_y, sum + weight]);
+    (sum > 0.0).then(|| [x / sum, y / sum])
+}
+
 /// So many of a thing: "1 frame", "2 frames".
 pub fn counted(count: usize, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })

@@ -1,4 +1,4 @@
-//! Components of touched taxels, by their raster order.
+//! Components of touched taxels, by their raster order: a flood fill from each first taxel.
 
 /// The labels of a grid's taxels, to be used again for the next frame.
 #[derive(Clone, Debug, Default)]
@@ -7,65 +7,38 @@ pub struct Labels {
     pub components: Vec<Option<usize>>,
     /// Number of components.
     pub count: usize,
-    /// Of each provisional label, one that it turned out to be the same component as: itself or a lower one.
-    same: Vec<usize>,
-    /// Of each provisional label, its component.
-    numbers: Vec<usize>,
+    /// Taxels of a component whose neighbours have not been looked at.
+    open: Vec<usize>,
 }
 
 impl Labels {
     /// Labels the taxels of a grid of `columns`: neighbours along x or y that both touch are of one component, those along the
     /// diagonal alone are not.
-    ///
-    /// As hardware would do it: taxel by taxel in raster order, each looks at the one before and the one above. Where both
-    /// have labels, the higher one is noted to be the lower one. With one pass over the labels and one over the taxels the
-    /// components are numbered: m + m/2 + m steps at most, since no two neighbours begin a label of their own.
     pub fn find(&mut self, touched: &[bool], columns: usize) {
-        let Self { components, count, same, numbers } = self;
+        let Self { components, count, open } = self;
         components.clear();
-        same.clear();
-        for (taxel, &touches) in touched.iter().enumerate() {
-            if !touches {
-                components.push(None);
+        components.resize(touched.len(), None);
+        *count = 0;
+        for first in 0..touched.len() {
+            if !touched[first] || components[first].is_some() {
                 continue;
             }
-            let before = if taxel % columns > 0 { components[taxel - 1] } else { None };
-            let above = taxel.checked_sub(columns).and_then(|above| components[above]);
-            let label = match (before, above) {
-                (Some(before), Some(above)) => join(same, before, above),
-                (Some(label), None) | (None, Some(label)) => label,
-                (None, None) => {
-                    same.push(same.len());
-                    same.len() - 1
+            components[first] = Some(*count);
+            open.push(first);
+            while let Some(taxel) = open.pop() {
+                let before = (taxel % columns > 0).then(|| taxel - 1);
+                let behind = Some(taxel + 1).filter(|behind| behind % columns > 0);
+                let beside = [before, behind, taxel.checked_sub(columns), Some(taxel + columns)];
+                for next in beside.into_iter().flatten() {
+                    if touched.get(next) == Some(&true) && components[next].is_none() {
+                        components[next] = Some(*count);
+                        open.push(next);
+                    }
                 }
-            };
-            components.push(Some(label));
-        }
-        *count = 0;
-        numbers.clear();
-        for (label, &of) in same.iter().enumerate() {
-            // A label that is another one's is so of a lower one, which has its number.
-            let number = if of == label { *count } else { numbers[of] };
-            *count += usize::from(of == label);
-            numbers.push(number);
-        }
-        for component in components.iter_mut().flatten() {
-            *component = numbers[*component];
+            }
+            *count += 1;
         }
     }
-}
-
-/// Notes that two labels are of one component, and returns its lowest label.
-fn join(same: &mut [usize], a: usize, b: usize) -> usize {
-    let [a, b] = [a, b].map(|mut label| {
-        while same[label] != label {
-            label = same[label];
-        }
-        label
-    });
-    let (low, high) = (a.min(b), a.max(b));
-    same[high] = low;
-    low
 }
 
 #[cfg(test)]

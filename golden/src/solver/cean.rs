@@ -3,6 +3,7 @@
 use nalgebra::DVector;
 
 pub use crate::estimators::Contact;
+use crate::numbers::centre;
 
 /// Analyses the stress `b` (pascals, length m) at `positions` (metres).
 ///
@@ -14,22 +15,8 @@ pub fn cean(b: &DVector<f64>, positions: &[[f64; 2]], noise_floor: f64) -> Conta
     let stress_sum: f64 = b.iter().map(|stress| stress.abs()).sum();
     let compressed = b.iter().any(|&stress| stress < -noise_floor);
     let tensile = b.iter().any(|&stress| stress > noise_floor);
-    let direction = (compressed && tensile).then(|| {
-        let c = centroid(b, positions, |stress| (-stress).max(0.0));
-        let t = centroid(b, positions, |stress| stress.max(0.0));
-        [c[0] - t[0], c[1] - t[1]]
-    });
+    let centroid = |sign: f64| centre(b.iter().zip(positions).map(|(stress, &at)| ((sign * stress).max(0.0), at)));
+    let centroids = if compressed && tensile { centroid(-1.0).zip(centroid(1.0)) } else { None };
+    let direction = centroids.map(|(c, t)| [c[0] - t[0], c[1] - t[1]]);
     Contact { stress_sum, touched: stress_sum >= b.len() as f64 * noise_floor, direction, noise_left: 1.0 }
-}
-
-/// Mean position under a weight that is not zero everywhere.
-fn centroid(b: &DVector<f64>, positions: &[[f64; 2]], weight: impl Fn(f64) -> f64) -> [f64; 2] {
-    let mut sums = [0.0; 3];
-    for (&stress, position) in b.iter().zip(positions) {
-        let weight = weight(stress);
-        sums[0] += weight * position[0];
-        sums[1] += weight * position[1];
-        sums[2] += weight;
-    }
-    [sums[0] / sums[2], sums[1] / sums[2]]
 }

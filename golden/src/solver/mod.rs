@@ -52,7 +52,7 @@ impl SolverError {
 }
 
 /// What one frame yields.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solution {
     /// What is to be known about the result.
     pub status: Status,
@@ -83,19 +83,7 @@ pub struct Solution {
 impl Solution {
     /// The answer to a frame without one: the status and zeros, in a field of `taxels` values.
     pub fn zeros(status: Status, taxels: usize) -> Self {
-        Self {
-            status,
-            resultant: [0.0; 3],
-            torque: [0.0; 3],
-            standard_error: 0.0,
-            contacts: 0,
-            records: Vec::new(),
-            mu: 0.0,
-            phi: 0.0,
-            mu_x: 0.0,
-            mu_y: 0.0,
-            field: std::array::from_fn(|_| vec![0.0; taxels]),
-        }
+        Self { status, field: std::array::from_fn(|_| vec![0.0; taxels]), ..Self::default() }
     }
 
     /// As [`Solution::zeros`], in place.
@@ -107,7 +95,7 @@ impl Solution {
         }
         let mut records = std::mem::take(&mut self.records);
         records.clear();
-        *self = Self { records, field, ..Self::zeros(status, 0) };
+        *self = Self { status, records, field, ..Self::default() };
     }
 
     /// Multiplies all forces by a gain.

@@ -10,7 +10,7 @@ use super::table::Measured;
 use crate::check::ends::end_of_range;
 use crate::dead_taxels::MOST_DEAD;
 use crate::design::Design;
-use crate::numbers::{counted, mean};
+use crate::numbers::{self, counted, mean};
 
 /// A contact ends where the centre of pressure has moved by this many pitches.
 const MOVED: f64 = 0.5;
@@ -178,13 +178,9 @@ struct Stretch<'a> {
 
 /// Centre of pressure in pitches.
 fn centre(design: &Design, x: &[f64], peak: f64) -> [f64; 2] {
-    let mut sums = [0.0; 3];
-    for (taxel, &x) in x.iter().enumerate().filter(|(_, x)| **x >= BESIDE * peak) {
-        sums[0] += x * (taxel % design.sensor.columns) as f64;
-        sums[1] += x * (taxel / design.sensor.columns) as f64;
-        sums[2] += x;
-    }
-    [sums[0] / sums[2], sums[1] / sums[2]]
+    let columns = design.sensor.columns;
+    let places = x.iter().enumerate().map(|(taxel, &x)| (x, [taxel % columns, taxel / columns].map(|at| at as f64)));
+    numbers::centre(places.filter(|(x, _)| *x >= BESIDE * peak)).unwrap_or_default()
 }
 
 fn near(a: [f64; 2], b: [f64; 2]) -> bool {

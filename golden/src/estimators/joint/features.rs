@@ -1,6 +1,8 @@
 //! What the correction sees of a contact: the stress that the normal forces alone would cause, in a window that moves with
 //! the contact, and where between the taxels its centre lies.
 
+use crate::numbers::centre;
+
 /// The middle between two taxels, in pitches, is taken for this much more: a contact right between them, as every even
 /// grid has one in its middle, would else be given to one of them by the last digit. The calibration's contacts lie
 /// anywhere, and there no tie is broken.
@@ -30,15 +32,10 @@ impl Features {
         mu: [f64; 2],
         tie: f64,
     ) {
-        let mut sums = [0.0; 3];
-        for (taxel, stress) in normal.iter().enumerate() {
-            let weight = (-stress).max(0.0);
-            sums[0] += weight;
-            sums[1] += weight * (taxel % columns) as f64;
-            sums[2] += weight * (taxel / columns) as f64;
-        }
+        let places = (0..).map(|taxel: usize| [taxel % columns, taxel / columns].map(|at| at as f64));
+        let pressed = normal.iter().map(|stress| (-stress).max(0.0)).zip(places);
         // Without compression any place does: there is nothing to see.
-        let centroid = if sums[0] > 0.0 { [sums[1] / sums[0], sums[2] / sums[0]] } else { [0.0; 2] };
+        let centroid = centre(pressed).unwrap_or_default();
         let centre = centroid.map(|at| (at + (0.5 + tie)).floor());
         let [half_x, half_y] = half_window.map(|half| half as i64);
         let [centre_x, centre_y] = centre.map(|at| at as i64);
