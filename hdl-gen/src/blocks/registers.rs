@@ -39,12 +39,15 @@ pub struct Field {
     pub value: u32,
 }
 
-/// The fields of the read-only registers of a design with the given hash. Truths are 0 or 1.
+/// The fields of the read-only registers of a design with the given hash, sixteen hexadecimal digits. Truths are 0 or 1.
+///
+/// # Panics
+///
+/// If the hash is none.
 pub fn constants(plan: &Plan, hash: &str) -> Vec<Field> {
     let (design, hardware) = (&plan.design, &plan.design.hardware);
     let calibration = plan.calibration.as_ref();
     let version = |part: &str| part.parse().expect("a number");
-    // Sixteen hexadecimal digits.
     let hash = |digits| u32::from_str_radix(&hash[digits], 16).expect("hexadecimal digits");
     let field = |word, low, name, value| Field { name, word, low, value };
     vec![
