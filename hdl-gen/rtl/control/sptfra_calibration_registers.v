@@ -2,7 +2,7 @@
 // Part of the SpTFRA hardware generator.
 //
 // The registers of a calibration in memory, beside those of sptfra_registers: 0x080 to 0x0A8 of the map in the design's
-// control/NAME.rdl, with a curve in the banks 0x0AC, and bits 4, 6 and 23:20 of FEATURES.
+// control/NAME.rdl, with a curve in the banks 0x0AC.
 //
 // Reads answer in the same cycle. Words are written whole: fewer strobes than four change nothing but CALIBRATION_INDEX
 // and CALIBRATION_ERRORS.
@@ -10,18 +10,8 @@
 `default_nettype none
 
 module sptfra_calibration_registers #(
-    // Words of a bank
-    parameter [15:0] WORDS = 16'd26,
-    // Bits that are dropped of gain times count
-    parameter [5:0] SHIFT = 6'd14,
-    // A step of the stress is 2^LSB Pa
-    parameter [7:0] LSB = 8'd0,
-    // Largest magnitude of an offset, in steps of the stress
-    parameter [31:0] OFFSET_LIMIT = 32'd0,
-    // Steps of the stress for a count at a gain of 1, a float64
-    parameter [63:0] COUNT_STEPS = 64'd0,
-    // Most dead taxels that a bank can have replaced
-    parameter [3:0] REPLACEABLE = 4'd0,
+    // The words before CALIBRATION_INDEX, the first in the lowest bits: CALIBRATION, its limit of offsets, its steps
+    parameter [4*32-1:0] CONSTANTS = {4{32'd0}},
     // The register of the curve; 0: there is none
     parameter [31:0] CURVE = 32'd0
 ) (
@@ -58,11 +48,7 @@ module sptfra_calibration_registers #(
 );
 
     // Addresses, in words
-    localparam [9:0] FEATURES = 10'd6;
     localparam [9:0] CALIBRATION = 10'd32;
-    localparam [9:0] CALIBRATION_OFFSET_LIMIT = 10'd33;
-    localparam [9:0] CALIBRATION_STEPS_LOW = 10'd34;
-    localparam [9:0] CALIBRATION_STEPS_HIGH = 10'd35;
     localparam [9:0] CALIBRATION_INDEX = 10'd36;
     localparam [9:0] CALIBRATION_DATA = 10'd37;
     localparam [9:0] CALIBRATION_COMMIT = 10'd38;
@@ -76,24 +62,26 @@ module sptfra_calibration_registers #(
 
     reg [5:0] errors; // contradiction, bad frame, not at rest, wrong CRC, busy, out of range
 
-    assign write_mapped = (write_word >= CALIBRATION) && (write_word <= LAST);
-    assign read_mapped = (read_word >= CALIBRATION) && (read_word <= LAST);
+    function is_mapped(input [9:0] at);
+        is_mapped = (at >= CALIBRATION) && (at <= LAST);
+    endfunction
+
+    assign write_mapped = is_mapped(write_word);
+    assign read_mapped = is_mapped(read_word);
 
     // ---- Reads
+    wire is_constant = (read_word >= CALIBRATION) && (read_word < CALIBRATION_INDEX);
+
     always @(*) begin
         case (read_word)
-            FEATURES: read_data = {8'd0, REPLACEABLE, 13'd0, CURVE != 32'd0, 6'h10};
-            CALIBRATION: read_data = {LSB, 2'd0, SHIFT, WORDS};
-            CALIBRATION_OFFSET_LIMIT: read_data = OFFSET_LIMIT;
-            CALIBRATION_STEPS_LOW: read_data = COUNT_STEPS[31:0];
-            CALIBRATION_STEPS_HIGH: read_data = COUNT_STEPS[63:32];
             CALIBRATION_INDEX: read_data = {index_active, 15'd0, index};
             CALIBRATION_DATA: read_data = idle ? word : 32'd0;
             CALIBRATION_STATUS: read_data = {21'd0, taring, !idle, active, version};
             CALIBRATION_ERRORS: read_data = {26'd0, errors};
             CALIBRATION_CRC: read_data = crc;
             CALIBRATION_CURVE: read_data = CURVE;
-            default: read_data = 32'd0; // commands read as zero
+            // Commands read as zero
+            default: read_data = is_constant ? CONSTANTS[{read_word[1:0], 5'd0} +: 32] : 32'd0;
         endcase
     end
 

@@ -10,43 +10,12 @@
 `default_nettype none
 
 module sptfra_registers #(
-    // Version of the register map
-    parameter [7:0] MAP_VERSION = 8'd0,
-    // Version of the generator
-    parameter [7:0] MAJOR = 8'd0,
-    parameter [7:0] MINOR = 8'd0,
-    parameter [7:0] PATCH = 8'd0,
-    // The design's hash, as in metadata.json
-    parameter [63:0] HASH = 64'd0,
-    // Taxels in x and in y
-    parameter [7:0] COLUMNS = 8'd4,
-    parameter [7:0] ROWS = 8'd3,
-    // Multiply-accumulate lanes
-    parameter [7:0] LANES = 8'd4,
-    // 32-bit words of a frame
-    parameter [15:0] WORDS_IN = 16'd12,
-    parameter [15:0] WORDS_OUT = 16'd8,
-    // The forces of each taxel go out too
-    parameter [0:0] HAS_FIELD = 1'd0,
-    // The reduced plan, else the paper's
-    parameter [0:0] IS_REDUCED = 1'd1,
-    // Frames hold counts, else pascals
-    parameter [0:0] HAS_COUNTS = 1'd0,
+    // Words 0 to 10, what the design is; the first in the lowest bits
+    parameter [11*32-1:0] CONSTANTS = {11{32'd0}},
     // Frames that find no room are dropped
     parameter [0:0] DROPS = 1'd0,
     // k of the average over frames after reset, 1 to 8; 0: frames are not averaged
-    parameter [3:0] SMOOTHING_RATE = 4'd0,
-    // Bytes of a beat on either stream
-    parameter [7:0] STREAM_BYTES = 8'd4,
-    // A sample is: 0 float32, 1 int16, 2 uint16
-    parameter [1:0] SAMPLES = 2'd0,
-    // The design's clock
-    parameter [31:0] CLOCK_KHZ = 32'd125000,
-    // Largest stress in Pa, a float32
-    parameter [31:0] FULL_SCALE = 32'd0,
-    // Predicted cycles of a frame alone, first beat in to last beat out, and between frames
-    parameter [31:0] LATENCY_CYCLES = 32'd0,
-    parameter [31:0] INTERVAL_CYCLES = 32'd0
+    parameter [3:0] SMOOTHING_RATE = 4'd0
 ) (
     input  wire clock,
     input  wire reset,
@@ -80,24 +49,8 @@ module sptfra_registers #(
     output wire [3:0] smoothing
 );
 
-    if (SAMPLES == 2'd3) begin : gen_check_samples
-        sptfra_error_samples_are_float32_int16_or_uint16 invalid ();
-    end
-
-    // "TFRA" in ASCII
-    localparam [31:0] MAGIC = 32'h54465241;
     // Addresses, in words
-    localparam [9:0] IDENTITY = 10'd0;
-    localparam [9:0] VERSION = 10'd1;
-    localparam [9:0] HASH_LOW = 10'd2;
-    localparam [9:0] HASH_HIGH = 10'd3;
-    localparam [9:0] GEOMETRY = 10'd4;
-    localparam [9:0] FRAME = 10'd5;
-    localparam [9:0] FEATURES = 10'd6;
-    localparam [9:0] CLOCK = 10'd7;
-    localparam [9:0] FULL_SCALE_PASCALS = 10'd8;
-    localparam [9:0] PREDICTED_LATENCY = 10'd9;
-    localparam [9:0] PREDICTED_INTERVAL = 10'd10;
+    localparam [9:0] CONSTANT_WORDS = 10'd11;
     localparam [9:0] CONTROL = 10'd16;
     localparam [9:0] STATUS = 10'd17;
     localparam [9:0] INTERRUPT_ENABLE = 10'd18;
@@ -112,17 +65,17 @@ module sptfra_registers #(
     localparam [9:0] SMOOTHING = 10'd27;
     localparam [0:0] AVERAGES = (SMOOTHING_RATE != 4'd0);
 
+    function is_mapped(input [9:0] word);
+        is_mapped = (word < CONSTANT_WORDS) || ((word >= CONTROL) && (word <= LAST_INTERVAL))
+            || (DROPS && (word == FRAMES_DROPPED)) || (AVERAGES && (word == SMOOTHING));
+    endfunction
+
     reg [2:0] enabled;
     reg [2:0] pending;
     reg [3:0] rate;
 
-    // Constants to word 10, the rest from word 16 on
-    assign write_mapped = (write_word <= PREDICTED_INTERVAL)
-        || ((write_word >= CONTROL) && (write_word <= LAST_INTERVAL))
-        || (DROPS && (write_word == FRAMES_DROPPED)) || (AVERAGES && (write_word == SMOOTHING));
-    assign read_mapped = (read_word <= PREDICTED_INTERVAL)
-        || ((read_word >= CONTROL) && (read_word <= LAST_INTERVAL))
-        || (DROPS && (read_word == FRAMES_DROPPED)) || (AVERAGES && (read_word == SMOOTHING));
+    assign write_mapped = is_mapped(write_word);
+    assign read_mapped = is_mapped(read_word);
     assign smoothing = rate[3] ? 4'd8 : rate;
 
     // ---- Frames and their cycles
@@ -203,18 +156,6 @@ module sptfra_registers #(
     // ---- Reads
     always @(*) begin
         case (read_word)
-            IDENTITY: read_data = MAGIC;
-            VERSION: read_data = {MAP_VERSION, MAJOR, MINOR, PATCH};
-            HASH_LOW: read_data = HASH[31:0];
-            HASH_HIGH: read_data = HASH[63:32];
-            GEOMETRY: read_data = {8'd0, LANES, ROWS, COLUMNS};
-            FRAME: read_data = {WORDS_OUT, WORDS_IN};
-            FEATURES: read_data = {14'd0, SAMPLES, STREAM_BYTES, AVERAGES, 1'b0, DROPS, 2'd0,
-                HAS_COUNTS, IS_REDUCED, HAS_FIELD};
-            CLOCK: read_data = CLOCK_KHZ;
-            FULL_SCALE_PASCALS: read_data = FULL_SCALE;
-            PREDICTED_LATENCY: read_data = LATENCY_CYCLES;
-            PREDICTED_INTERVAL: read_data = INTERVAL_CYCLES;
             STATUS: read_data = {28'd0, sending, receiving, discarding, resetting};
             INTERRUPT_ENABLE: read_data = {29'd0, enabled};
             INTERRUPT_STATUS: read_data = {29'd0, pending};
@@ -226,7 +167,8 @@ module sptfra_registers #(
             LAST_INTERVAL: read_data = last_interval;
             FRAMES_DROPPED: read_data = DROPS ? frames_dropped : 32'd0;
             SMOOTHING: read_data = AVERAGES ? {28'd0, rate} : 32'd0;
-            default: read_data = 32'd0; // CONTROL reads as zero
+            // CONTROL reads as zero
+            default: read_data = (read_word < CONSTANT_WORDS) ? CONSTANTS[{read_word[3:0], 5'd0} +: 32] : 32'd0;
         endcase
     end
 

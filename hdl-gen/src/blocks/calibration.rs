@@ -47,13 +47,15 @@ pub fn curve_register(of: &CalibrationPlan) -> Option<[u8; 3]> {
 
 /// Parameters of `sptfra_calibration_registers`.
 pub fn registers(of: &CalibrationPlan) -> Parameters {
+    let steps = of.count_steps.to_bits();
+    let words = [
+        (u64::from(lsb(of)) << 24 | u64::from(of.shift) << 16 | of.words() as u64, "LSB, shift, words"),
+        (of.offset_limit as u64, "limit of offsets"),
+        (steps & u64::from(u32::MAX), "steps of a count, low"),
+        (steps >> 32, "steps of a count, high"),
+    ];
     Parameters::new()
-        .unsigned("WORDS", 16, of.words() as u64)
-        .unsigned("SHIFT", 6, of.shift.into())
-        .unsigned("LSB", 8, lsb(of).into())
-        .unsigned("OFFSET_LIMIT", 32, of.offset_limit as u64)
-        .pattern("COUNT_STEPS", 64, of.count_steps.to_bits())
-        .unsigned("REPLACEABLE", 4, of.power_up.dead.room as u64)
+        .table("CONSTANTS", 32, words.map(|(word, of)| (word, of.to_owned())).to_vec())
         .some(curve_register(of), |all, [room, exponent, lsb]| {
             all.list("CURVE", 8, [room, exponent, lsb, 0].map(u64::from))
         })

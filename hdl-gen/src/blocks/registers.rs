@@ -1,6 +1,5 @@
 //! The register bank `sptfra_registers`: what it says of a design.
 
-use crate::parameters::Base;
 use crate::parameters::Parameters;
 use crate::plan::Plan;
 
@@ -12,64 +11,75 @@ pub fn samples(plan: &Plan) -> u8 {
     plan.streams().sample as u8
 }
 
-/// What a read-only register holds: the bank's instance has a parameter of this name, the register map's template the same in
-/// small letters.
+/// A field of a read-only register, by its name in the register map's template.
 #[derive(Clone, Debug)]
-struct Constant {
-    name: &'static str,
-    /// As wide as its field.
-    bits: u32,
-    base: Base,
-    digits: String,
+pub struct Field {
+    /// Its name.
+    pub name: &'static str,
+    /// Its register's address in words.
+    word: usize,
+    /// Its lowest bit.
+    low: u32,
+    /// What it holds.
+    pub value: u32,
 }
 
-/// What the read-only registers hold. Truths are 0 or 1: they are reset values in the register map.
-#[derive(Clone, Debug)]
-pub struct Constants(Vec<Constant>);
+/// The fields of the read-only registers of a design with the given hash. Truths are 0 or 1.
+///
+/// # Panics
+/// If the hash is not sixteen hexadecimal digits.
+pub fn constants(plan: &Plan, hash: &str) -> Vec<Field> {
+    let (design, hardware) = (&plan.design, &plan.design.hardware);
+    let calibration = plan.calibration.as_ref();
+    let version = |part: &str| part.parse().expect("a number");
+    // Sixteen hexadecimal digits.
+    let hash = |digits| u32::from_str_radix(&hash[digits], 16).expect("hexadecimal digits");
+    let field = |word, low, name, value| Field { name, word, low, value };
+    vec![
+        field(0, 0, "magic", u32::from_be_bytes(*b"TFRA")),
+        field(1, 0, "patch", version(env!("CARGO_PKG_VERSION_PATCH"))),
+        field(1, 8, "minor", version(env!("CARGO_PKG_VERSION_MINOR"))),
+        field(1, 16, "major", version(env!("CARGO_PKG_VERSION_MAJOR"))),
+        field(1, 24, "map_version", MAP_VERSION.into()),
+        field(2, 0, "hash_low", hash(8..16)),
+        field(3, 0, "hash_high", hash(0..8)),
+        field(4, 0, "columns", design.sensor.columns as u32),
+        field(4, 8, "rows", design.sensor.rows as u32),
+        field(4, 16, "lanes", hardware.lanes as u32),
+        field(5, 0, "words_in", plan.streams().words_in() as u32),
+        field(5, 16, "words_out", plan.words_out() as u32),
+        field(6, 0, "has_field", u32::from(plan.field_words() > 0)),
+        field(6, 1, "is_reduced", u32::from(plan.channels() > 1)),
+        field(6, 2, "has_counts", u32::from(design.input.counts())),
+        field(6, 4, "has_calibration", u32::from(calibration.is_some())),
+        field(6, 5, "drops", u32::from(plan.streams().drops)),
+        field(6, 6, "has_curve", u32::from(calibration.is_some_and(|of| of.curve().is_some()))),
+        field(6, 7, "averages", u32::from(plan.smoothing.is_some())),
+        field(6, 8, "stream_bytes", (plan.streams().bits / 8) as u32),
+        field(6, 16, "samples", samples(plan).into()),
+        field(6, 20, "replaceable", calibration.map_or(0, |of| of.power_up.dead.room as u32)),
+        field(7, 0, "clock_khz", (hardware.clock_mhz * 1e3).round() as u32),
+        // In Pa, float32.
+        field(8, 0, "full_scale", (hardware.full_scale_pa as f32).to_bits()),
+        field(9, 0, "latency_cycles", plan.timeline.latency_cycles as u32),
+        field(10, 0, "interval_cycles", plan.timeline.interval_cycles as u32),
+    ]
+}
 
-impl Constants {
-    /// Those of a design with the given hash of sixteen hexadecimal digits.
-    pub fn new(plan: &Plan, hash: &str) -> Self {
-        let (design, hardware) = (&plan.design, &plan.design.hardware);
-        let decimal =
-            |name, bits, value: &dyn ToString| Constant { name, bits, base: Base::Decimal, digits: value.to_string() };
-        let hexadecimal = |name, bits, digits: String| Constant { name, bits, base: Base::Hexadecimal, digits };
-        let full_scale = (hardware.full_scale_pa as f32).to_bits();
-        Self(vec![
-            decimal("MAP_VERSION", 8, &MAP_VERSION),
-            decimal("MAJOR", 8, &env!("CARGO_PKG_VERSION_MAJOR")),
-            decimal("MINOR", 8, &env!("CARGO_PKG_VERSION_MINOR")),
-            decimal("PATCH", 8, &env!("CARGO_PKG_VERSION_PATCH")),
-            hexadecimal("HASH", 64, hash.to_owned()),
-            decimal("COLUMNS", 8, &design.sensor.columns),
-            decimal("ROWS", 8, &design.sensor.rows),
-            decimal("LANES", 8, &hardware.lanes),
-            decimal("WORDS_IN", 16, &plan.streams().words_in()),
-            decimal("WORDS_OUT", 16, &plan.words_out()),
-            decimal("HAS_FIELD", 1, &u8::from(plan.field_words() > 0)),
-            decimal("IS_REDUCED", 1, &u8::from(plan.channels() > 1)),
-            decimal("HAS_COUNTS", 1, &u8::from(design.input.counts())),
-            decimal("DROPS", 1, &u8::from(plan.streams().drops)),
-            decimal("SMOOTHING_RATE", 4, &plan.smoothing.as_ref().map_or(0, |of| of.rate)),
-            decimal("STREAM_BYTES", 8, &(plan.streams().bits / 8)),
-            decimal("SAMPLES", 2, &samples(plan)),
-            decimal("CLOCK_KHZ", 32, &((hardware.clock_mhz * 1e3).round() as u64)),
-            // In Pa, float32.
-            hexadecimal("FULL_SCALE", 32, format!("{full_scale:08x}")),
-            decimal("LATENCY_CYCLES", 32, &plan.timeline.latency_cycles),
-            decimal("INTERVAL_CYCLES", 32, &plan.timeline.interval_cycles),
-        ])
+/// Parameters of `sptfra_registers`.
+pub fn parameters(plan: &Plan, constants: &[Field]) -> Parameters {
+    let mut words: Vec<(u64, String)> = Vec::new();
+    for &Field { name, word, low, value } in constants {
+        let value = u64::from(value) << low;
+        match words.get_mut(word) {
+            Some((all, names)) => {
+                *all |= value;
+                *names = format!("{names}, {name}");
+            }
+            None => words.push((value, name.to_owned())),
+        }
     }
-
-    /// The parameters of the bank's instance.
-    pub fn parameters(&self) -> Parameters {
-        self.0.iter().fold(Parameters::new(), |all, Constant { name, bits, base, digits }| {
-            all.digits(name, *bits, *base, digits.clone())
-        })
-    }
-
-    /// Their names in small letters, and their digits.
-    pub fn digits(&self) -> impl Iterator<Item = (String, &str)> {
-        self.0.iter().map(|constant| (constant.name.to_lowercase(), constant.digits.as_str()))
-    }
+    let drops = plan.streams().drops.into();
+    let rate = plan.smoothing.as_ref().map_or(0, |of| of.rate.into());
+    Parameters::new().table("CONSTANTS", 32, words).unsigned("DROPS", 1, drops).unsigned("SMOOTHING_RATE", 4, rate)
 }

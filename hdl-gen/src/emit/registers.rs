@@ -4,8 +4,8 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use tera::{Context, context};
 
-use crate::blocks::calibration;
-use crate::blocks::registers::Constants;
+use crate::blocks::registers::Field;
+use crate::blocks::{calibration, registers};
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
 
@@ -41,6 +41,9 @@ const AXI_SIGNALS: [(&str, bool, u32); 19] = [
     ("rready", false, 1),
 ];
 
+/// Fields of read-only registers that the register map's template has as hexadecimal digits.
+const HEXADECIMAL: [&str; 3] = ["hash_low", "hash_high", "full_scale"];
+
 /// A port of the bus.
 #[derive(Serialize)]
 struct AxiPort {
@@ -62,13 +65,9 @@ fn context(plan: &Plan, hash: &str) -> Context {
         range: format!("{:6}", if bits == 1 { String::new() } else { format!("[{}:0]", bits - 1) }),
         used: !signal.ends_with("prot"),
     };
-    let constants = Constants::new(plan, hash);
-    // Digits of the hash, a register's each.
-    let (hash_high, hash_low) = hash.split_at(8);
+    let constants = registers::constants(plan, hash);
     let mut context = context! {
         name => &plan.design.name,
-        hash_high => hash_high,
-        hash_low => hash_low,
         axi_ports => &AXI_SIGNALS.iter().map(port).collect::<Vec<_>>(),
         // Bits and 32-bit words of a beat.
         stream_bits => &plan.streams().bits,
@@ -78,11 +77,12 @@ fn context(plan: &Plan, hash: &str) -> Context {
         // The design's rate of averages; 0 where frames are not averaged.
         smoothing => &plan.smoothing.as_ref().map_or(0, |of| of.rate),
         // Parameters of the bank.
-        registers => &verilog(&constants.parameters()),
+        registers => &verilog(&registers::parameters(plan, &constants)),
         calibration => &plan.calibration.as_ref().map(of_calibration),
     };
-    for (name, digits) in constants.digits() {
-        context.insert(name, digits);
+    for Field { name, value, .. } in constants {
+        let text = if HEXADECIMAL.contains(&name) { format!("{value:08x}") } else { value.to_string() };
+        context.insert(name, &text);
     }
     context
 }

@@ -7,7 +7,7 @@ use testbench::tools;
 use crate::support::{library_file, library_folders, look_in};
 
 /// Module, parameter, value, what the tool must name. A value that several modules share is looked at in one of them.
-const SENSELESS: [(&str, &str, &str, &str); 27] = [
+const SENSELESS: [(&str, &str, &str, &str); 26] = [
     ("bz", "COLUMNS", "1", "columns_and_rows_must_be_2_to_64"),
     ("frame_writer", "DATA_BITS", "36", "data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded"),
     ("frame_writer", "SAMPLES", "3", "samples_of_a_beat_must_be_1_2_4_or_8"),
@@ -26,7 +26,6 @@ const SENSELESS: [(&str, &str, &str, &str); 27] = [
     ("program_scheduler", "RESIDUALS", "3", "one_or_two_residuals_have_a_buffer"),
     ("op", "SLIP_RELEASE", "1", "a_slip_ends_below_its_limit"),
     ("output", "WORDS", "3", "words_of_a_beat_must_be_1_2_or_4"),
-    ("registers", "SAMPLES", "3", "samples_are_float32_int16_or_uint16"),
     ("estimator_line", "CHANNELS", "2", "channels_must_be_1_or_4"),
     ("grid_search", "SIDE", "15", "a_side_has_11_or_13_points_and_a_value_20_to_24_bits_of_fraction"),
     ("grid_search", "FRACTION", "25", "a_side_has_11_or_13_points_and_a_value_20_to_24_bits_of_fraction"),

@@ -299,11 +299,11 @@ fn a_wrong_bank_is_noticed() {
     let subject = &subjects()[0];
     let map = map(&subject.plan);
     let faults = [
-        ("HASH_HIGH = 10'd3", "HASH_HIGH = 10'd11", "a register that moved"),
-        ("IS_REDUCED, HAS_FIELD}", "1'd0, HAS_FIELD}", "a feature that is not there"),
+        ("{read_word[3:0], 5'd0}", "{read_word[3:0] ^ 4'd1, 5'd0}", "registers that moved"),
+        ("read_word < CONSTANT_WORDS", "read_word < 10'd6", "features that are not there"),
         ("(enabled & ~write_mask[2:0]) | ones", "ones", "strobes that are not heard"),
         ("if (write_enable && (write_word == INTERRUPT_ENABLE))", "if (write_enable)", "writes that go elsewhere"),
-        ("write_word <= LAST_INTERVAL", "write_word <= 10'd31", "addresses that nothing has"),
+        ("word <= LAST_INTERVAL", "word <= 10'd31", "addresses that nothing has"),
     ];
     for (from, to, what) in some_faults(faults, |&(from, ..)| ("sptfra_registers", from)) {
         let built = broken(&subject.plan, "sptfra_registers", from, to);
