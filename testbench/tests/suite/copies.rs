@@ -86,10 +86,10 @@ fn each_lane_and_cell_has_its_own() {
     line.hardware.lanes = 8;
     let joint = with_joint(line.clone());
     let of_pes = ["pe.base_2"];
-    let of_cells = ["rectifiers.element_1", "rectifiers.element_2", "rectifiers.element_3"];
+    let of_cells = ["element_1", "element_2", "element_3"];
     // A flag of a leaf core, and what becomes a register of the multiplier.
     let of_none = ["pe.row_sequencer.primes"];
-    let factor = ["rectifiers.factor_1", "rectifiers.multiplier.coefficient"];
+    let factor = ["factor_1", "multiplier.coefficient"];
     for (design, copies, free) in [(line, &of_cells[..], &factor[..]), (joint, &OF_POINTS[..], &[][..])] {
         let names = |parts: &[&[&str]]| -> BTreeSet<String> {
             parts.iter().flat_map(|part| part.iter().map(|&name| name.to_owned())).collect()

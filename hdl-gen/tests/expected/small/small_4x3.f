@@ -34,7 +34,6 @@ rtl/sptfra_rom.v
 rtl/sptfra_row_sequencer.v
 rtl/sptfra_samples.v
 rtl/sptfra_search.v
-rtl/sptfra_search_cell.v
 rtl/sptfra_search_cells.v
 rtl/sptfra_search_distance.v
 rtl/sptfra_spmv_array.v

@@ -49,7 +49,6 @@ foreach file {
     sptfra_row_sequencer.v
     sptfra_samples.v
     sptfra_search.v
-    sptfra_search_cell.v
     sptfra_search_cells.v
     sptfra_search_distance.v
     sptfra_spmv_array.v
