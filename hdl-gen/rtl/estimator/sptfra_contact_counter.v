@@ -45,7 +45,6 @@ module sptfra_contact_counter #(
     end
 
     localparam SUM_BITS = DATA_BITS + $clog2(COLUMNS * ROWS) + 1;
-    localparam LABEL_WIDTH = (COLUMNS > 4) ? $clog2((COLUMNS + 1) / 2) + 1 : 2;
     localparam [31:0] LAST_ELEMENT = ELEMENTS - 1;
 
     // ---- Weights as they come: which frame they are of
@@ -160,16 +159,13 @@ module sptfra_contact_counter #(
     reg read_bank;
     reg [DATA_BITS-1:0] limit;
     reg [SUM_BITS-1:0] least;
-    reg [4:1] lasts; // behind the last step
-    wire last_step;
-    wire done = lasts[4];
+    wire done;
     wire start = (totals_there || waits) && !busy;
     wire [DATA_BITS+2:0] largest_5 = {1'b0, largest, 2'b00} + {3'b000, largest};
     wire [SUM_BITS+2:0] total_5 = {1'b0, total, 2'b00} + {3'b000, total} + {{(SUM_BITS-3){1'b0}}, 6'd63};
 
     always @(posedge clock) begin
         waits <= (totals_there || waits) && busy;
-        lasts <= {lasts[3:1], last_step};
         if (start) begin
             busy <= 1'b1;
             limit <= {3'b000, largest_5[DATA_BITS+2:6]};
@@ -183,23 +179,19 @@ module sptfra_contact_counter #(
             waits <= 1'b0;
             busy <= 1'b0;
             read_bank <= 1'b0;
-            lasts <= 4'd0;
         end
     end
 
-    wire step;
-    wire seed;
-    wire [LABEL_WIDTH-1:0] fresh;
-    wire [DATA_BITS-1:0] weight;
+    wire [3:0] found;
 
-    sptfra_weight_raster #(
-        .CHANNELS    (CHANNELS),
-        .COLUMNS     (COLUMNS),
-        .ROWS        (ROWS),
-        .DATA_BITS   (DATA_BITS),
-        .ROW_WIDTH   (ROW_WIDTH),
-        .LABEL_WIDTH (LABEL_WIDTH)
-    ) raster (
+    sptfra_components #(
+        .CHANNELS  (CHANNELS),
+        .COLUMNS   (COLUMNS),
+        .ROWS      (ROWS),
+        .DATA_BITS (DATA_BITS),
+        .SUM_BITS  (SUM_BITS),
+        .ROW_WIDTH (ROW_WIDTH)
+    ) components (
         .clock         (clock),
         .reset         (reset),
         .weights_valid (weights_valid),
@@ -209,29 +201,9 @@ module sptfra_contact_counter #(
         .start         (start),
         .bank          (read_bank),
         .limit         (limit),
-        .step          (step),
-        .seed          (seed),
-        .fresh         (fresh),
-        .weight        (weight),
-        .last          (last_step)
-    );
-
-    wire [3:0] found; // four cycles behind
-
-    sptfra_components #(
-        .COLUMNS     (COLUMNS),
-        .DATA_BITS   (DATA_BITS),
-        .SUM_BITS    (SUM_BITS),
-        .LABEL_WIDTH (LABEL_WIDTH)
-    ) components (
-        .clock    (clock),
-        .clear    (start),
-        .least    (least),
-        .step     (step),
-        .seed     (seed),
-        .fresh    (fresh),
-        .weight   (weight),
-        .contacts (found)
+        .least         (least),
+        .done          (done),
+        .contacts      (found)
     );
 
     // ---- Counts until their frames go out: of two frames that are searched, of one at each later stage; five at most

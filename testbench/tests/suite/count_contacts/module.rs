@@ -146,10 +146,10 @@ fn faults_are_noticed() {
         // One taxel of a component that is joined gets its new label.
         ("sptfra_components", "meets && (old == above)", "meets && (old == above) && (index == COLUMNS)"),
         ("sptfra_components", "(above != own)", "1'b1"),
-        ("sptfra_components", "joins ? sums[joined] : NOTHING", "NOTHING"),
-        ("sptfra_components", "(joined_2 >= least)", "1'b0"),
-        ("sptfra_components", "was_contact && !begins_3", "was_contact"),
-        ("sptfra_weight_raster", "!borders[3] && (weight_3 > limit)", "(weight_3 > limit)"),
+        ("sptfra_components", "joins_5 ? sums[joined_5] : NOTHING", "NOTHING"),
+        ("sptfra_components", "(joined_6 >= least)", "1'b0"),
+        ("sptfra_components", "was_contact && !begins_7", "was_contact"),
+        ("sptfra_components", "!borders[3] && (weight_3 > limit)", "(weight_3 > limit)"),
         ("sptfra_contact_counter", "are_own_1[index] ?", "1'b1 ?"),
         ("sptfra_contact_counter", "left + {3'd0, done}", "left"),
     ];
