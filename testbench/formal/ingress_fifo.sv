@@ -26,7 +26,6 @@ module harness (
     wire m_tlast;
     wire m_tvalid;
     wire follows_dropped;
-    wire follows;
     wire in_frame;
     wire keeps;
     wire [1:0] frames;
@@ -58,7 +57,6 @@ module harness (
         .write_address (write_address),
         .read_address  (read_address),
         .waiting       (waiting),
-        .follows       (follows),
         .\ring.words   (ring)
     );
 
@@ -205,7 +203,7 @@ module harness (
             assert (write_address == (({1'b0, read_address} + waiting >= DEPTH) ? read_address + waiting - DEPTH
                 : read_address + waiting));
             assert (same);
-            assert (follows == after_dropped);
+            assert (follows_dropped == after_dropped);
         end
     end
 `endif

@@ -18,30 +18,26 @@ module sptfra_axis_skid #(
     input  wire [WIDTH-1:0] s_tdata,
     input  wire s_tlast,
     input  wire s_tvalid,
-    output wire s_tready,
+    output reg  s_tready,
     // Stream out: data and last hold while valid waits for ready
-    output wire [WIDTH-1:0] m_tdata,
-    output wire m_tlast,
-    output wire m_tvalid,
+    output reg  [WIDTH-1:0] m_tdata,
+    output reg  m_tlast,
+    output reg  m_tvalid,
     input  wire m_tready
 );
 
-    reg ready;
-    reg valid;
-    reg [WIDTH-1:0] data;
-    reg last;
     reg spare_full;
     reg [WIDTH-1:0] spare_data;
     reg spare_last;
 
-    wire taken = s_tvalid && ready;
-    wire blocked = valid && !m_tready;
+    wire taken = s_tvalid && s_tready;
+    wire blocked = m_tvalid && !m_tready;
 
     // A beat that arrives while the output is blocked becomes the spare one
     wire spare_needed = blocked && (spare_full || taken);
 
     always @(posedge clock) begin
-        if (ready) begin
+        if (s_tready) begin
             spare_data <= s_tdata;
             spare_last <= s_tlast;
         end
@@ -50,28 +46,23 @@ module sptfra_axis_skid #(
     always @(posedge clock) begin
         // The output register takes the spare beat first; nothing is taken in while there is one
         if (!blocked) begin
-            valid <= spare_full || taken;
+            m_tvalid <= spare_full || taken;
             if (spare_full) begin
-                data <= spare_data;
-                last <= spare_last;
+                m_tdata <= spare_data;
+                m_tlast <= spare_last;
             end else begin
-                data <= s_tdata;
-                last <= s_tlast;
+                m_tdata <= s_tdata;
+                m_tlast <= s_tlast;
             end
         end
 
         // Nothing is offered or taken in reset
         if (reset) begin
-            valid <= 1'b0;
+            m_tvalid <= 1'b0;
         end
         spare_full <= spare_needed && !reset;
-        ready <= !(spare_needed || reset);
+        s_tready <= !(spare_needed || reset);
     end
-
-    assign s_tready = ready;
-    assign m_tdata = data;
-    assign m_tlast = last;
-    assign m_tvalid = valid;
 
 endmodule
 

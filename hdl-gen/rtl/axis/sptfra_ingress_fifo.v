@@ -23,11 +23,11 @@ module sptfra_ingress_fifo #(
     output wire s_tready,
     output wire kept, // the beat taken now is one of a frame that has room
     output wire dropped, // a frame that had none ends now
-    output wire follows_dropped, // with a first beat that is kept: frames before it had no room
+    output reg  follows_dropped, // with a first beat that is kept: frames before it had no room
     // Frames that have room
     output wire [32*WORDS-1:0] m_tdata,
     output wire m_tlast,
-    output wire m_tvalid,
+    output reg  m_tvalid,
     input  wire m_tready
 );
 
@@ -70,11 +70,8 @@ module sptfra_ingress_fifo #(
     reg [ADDRESS_WIDTH-1:0] write_address;
     reg [ADDRESS_WIDTH-1:0] read_address;
     reg [COUNT_WIDTH-1:0] waiting; // beats there
-    reg valid; // one more has been read
-    wire read = (waiting != {COUNT_WIDTH{1'b0}}) && (!valid || m_tready);
+    wire read = (waiting != {COUNT_WIDTH{1'b0}}) && (!m_tvalid || m_tready);
     wire leaves = m_tvalid && m_tready && m_tlast;
-
-    assign m_tvalid = valid;
 
     sptfra_ram #(
         .WIDTH         (32 * WORDS + 1),
@@ -101,32 +98,28 @@ module sptfra_ingress_fifo #(
             read_address <= (read_address == TOP) ? {ADDRESS_WIDTH{1'b0}} : read_address + 1'b1;
         end
         waiting <= waiting + {{(COUNT_WIDTH-1){1'b0}}, store} - {{(COUNT_WIDTH-1){1'b0}}, read};
-        valid <= read || (valid && !m_tready);
+        m_tvalid <= read || (m_tvalid && !m_tready);
         frames <= frames + {1'b0, begins} - {1'b0, leaves};
         if (reset) begin
             index <= {INDEX_WIDTH{1'b0}};
             write_address <= {ADDRESS_WIDTH{1'b0}};
             read_address <= {ADDRESS_WIDTH{1'b0}};
             waiting <= {COUNT_WIDTH{1'b0}};
-            valid <= 1'b0;
+            m_tvalid <= 1'b0;
             frames <= 2'd0;
         end
     end
 
     // ---- Whether frames were dropped since the last one that has room
-    reg follows;
-
-    assign follows_dropped = follows;
-
     always @(posedge clock) begin
         if (begins) begin
-            follows <= 1'b0;
+            follows_dropped <= 1'b0;
         end
         if (dropped) begin
-            follows <= 1'b1;
+            follows_dropped <= 1'b1;
         end
         if (reset) begin
-            follows <= 1'b0;
+            follows_dropped <= 1'b0;
         end
     end
 

@@ -13,11 +13,11 @@ module sptfra_stream_gate (
     input  wire clock,
     input  wire reset,
     input  wire request, // for one cycle
-    output wire core_reset,
-    output wire resetting, // request to core_reset
-    output wire discarding, // the rest of a packet
-    output wire receiving, // within a packet
-    output wire sending,
+    output reg  core_reset,
+    output reg  resetting, // request to core_reset
+    output reg  discarding, // the rest of a packet
+    output reg  receiving, // a beat was taken, its TLAST was not
+    output reg  sending, // a beat was offered, its TLAST was not taken
     // Stream in: outside, core
     input  wire s_tvalid,
     input  wire s_tlast,
@@ -32,54 +32,42 @@ module sptfra_stream_gate (
     input  wire m_tready
 );
 
-    reg waiting;
-    reg resets;
-    reg discards;
-    reg in_packet; // a beat was taken, its TLAST was not
-    reg out_packet; // a beat was offered, its TLAST was not taken
-
-    assign core_reset = resets;
-    assign resetting = waiting;
-    assign discarding = discards;
-    assign receiving = in_packet;
-    assign sending = out_packet;
-
     // ---- In
-    wire in_open = !waiting && !discards;
+    wire in_open = !resetting && !discarding;
     wire take = s_tvalid && s_tready;
-    wire in_packet_next = take ? !s_tlast : in_packet;
+    wire in_packet_next = take ? !s_tlast : receiving;
 
     assign core_s_tvalid = s_tvalid && in_open;
-    assign s_tready = discards || (core_s_tready && !waiting);
+    assign s_tready = discarding || (core_s_tready && !resetting);
 
     // ---- Out
-    wire out_open = !waiting || out_packet;
+    wire out_open = !resetting || sending;
 
     assign m_tvalid = core_m_tvalid && out_open;
     assign core_m_tready = m_tready && out_open;
 
     always @(posedge clock) begin
-        in_packet <= in_packet_next;
+        receiving <= in_packet_next;
         if (m_tvalid) begin
-            out_packet <= !(m_tready && core_m_tlast);
+            sending <= !(m_tready && core_m_tlast);
         end
         if (take && s_tlast) begin
-            discards <= 1'b0;
+            discarding <= 1'b0;
         end
-        resets <= waiting && !out_packet && !resets;
-        if (resets) begin
-            waiting <= 1'b0;
+        core_reset <= resetting && !sending && !core_reset;
+        if (core_reset) begin
+            resetting <= 1'b0;
         end
         if (request) begin
-            waiting <= 1'b1;
-            discards <= in_packet_next;
+            resetting <= 1'b1;
+            discarding <= in_packet_next;
         end
         if (reset) begin
-            waiting <= 1'b0;
-            resets <= 1'b0;
-            discards <= 1'b0;
-            in_packet <= 1'b0;
-            out_packet <= 1'b0;
+            resetting <= 1'b0;
+            core_reset <= 1'b0;
+            discarding <= 1'b0;
+            receiving <= 1'b0;
+            sending <= 1'b0;
         end
     end
 

@@ -14,7 +14,7 @@ module sptfra_whole_frames (
     // Stream in
     input  wire s_tvalid,
     input  wire s_tlast,
-    output wire s_tready,
+    output reg  s_tready,
     // A frame that begins now has room, all of it
     input  wire room,
     output wire kept, // the beat taken now
@@ -23,20 +23,18 @@ module sptfra_whole_frames (
     output wire dropped // it ends now
 );
 
-    reg ready;
     reg in_frame;
     reg keeps; // the frame coming in
-    wire taken = s_tvalid && ready;
+    wire taken = s_tvalid && s_tready;
     wire keeps_this = in_frame ? keeps : room;
 
-    assign s_tready = ready;
     assign kept = taken && keeps_this;
     assign begins = kept && !in_frame;
     assign dropping = in_frame && !keeps;
     assign dropped = taken && s_tlast && !keeps_this;
 
     always @(posedge clock) begin
-        ready <= !reset;
+        s_tready <= !reset;
         if (taken) begin
             in_frame <= !s_tlast;
             keeps <= keeps_this;

@@ -16,8 +16,8 @@ module sptfra_int_to_fixed #(
     input  wire [15:0] count,
     input  wire signed [9:0] shift, // sampled with count
     input  wire [26:0] limit, // constant while conversions are under way
-    output wire signed [26:0] fixed,
-    output wire saturated
+    output reg  signed [26:0] fixed,
+    output reg  saturated
 );
 
     // Twice the value is count * 2^28, shifted right by 27 - shift: 44 bits, of which the lowest decides the rounding
@@ -39,12 +39,7 @@ module sptfra_int_to_fixed #(
     reg beyond_3;
     reg [26:0] rounded_4;
     reg over_4;
-    reg signed [26:0] value_5;
-    reg over_5;
     wire [26:0] magnitude_4 = over_4 ? limit : rounded_4;
-
-    assign fixed = value_5;
-    assign saturated = over_5;
 
     always @(posedge clock) begin
         negatives <= {negatives[3:1], negative};
@@ -58,8 +53,8 @@ module sptfra_int_to_fixed #(
         beyond_3 <= beyond_2;
         rounded_4 <= doubled_3[27:1] + {26'd0, doubled_3[0]};
         over_4 <= beyond_3 || (doubled_3 >= {16'd0, threshold});
-        value_5 <= negatives[4] ? -$signed(magnitude_4) : $signed(magnitude_4);
-        over_5 <= over_4;
+        fixed <= negatives[4] ? -$signed(magnitude_4) : $signed(magnitude_4);
+        saturated <= over_4;
     end
 
     wire _unused = &{1'b0, distance};

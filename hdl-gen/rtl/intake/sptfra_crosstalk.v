@@ -35,8 +35,8 @@ module sptfra_crosstalk #(
     output wire out_takes,
     output wire out_ends,
     output reg  out_bad_length,
-    output wire [26:0] out_stress,
-    output wire [2:0] out_flags
+    output reg  [26:0] out_stress,
+    output reg  [2:0] out_flags
 );
 
     localparam TAXELS = COLUMNS * ROWS;
@@ -171,9 +171,7 @@ module sptfra_crosstalk #(
     wire [29:0] kept_1;
     reg signed [SUM_BITS:0] terms_1;
     reg signed [SUM_BITS+1:0] stress_2;
-    reg signed [26:0] stress_3;
     reg [2:0] flags_2;
-    reg [2:0] flags_3;
     reg [3:1] valid;
     reg [3:1] lasts;
     wire above = (stress_2 > MOST);
@@ -181,8 +179,6 @@ module sptfra_crosstalk #(
 
     assign out_takes = valid[3];
     assign out_ends = lasts[3];
-    assign out_stress = stress_3;
-    assign out_flags = flags_3;
 
     sptfra_ram #(
         .WIDTH         (30),
@@ -205,8 +201,8 @@ module sptfra_crosstalk #(
             + {row_sums[row][SUM_BITS-1], row_sums[row]};
         stress_2 <= {{(SUM_BITS-25){kept_1[26]}}, kept_1[26:0]} - {terms_1[SUM_BITS], terms_1};
         flags_2 <= kept_1[29:27];
-        stress_3 <= above ? STRESS_BOUND : below ? -STRESS_BOUND : stress_2[26:0];
-        flags_3 <= flags_2;
+        out_stress <= above ? STRESS_BOUND : below ? -STRESS_BOUND : stress_2[26:0];
+        out_flags <= flags_2;
         if (reset) begin
             valid <= 3'd0;
             lasts <= 3'd0;

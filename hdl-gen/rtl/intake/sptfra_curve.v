@@ -18,7 +18,7 @@ module sptfra_curve #(
     input  wire number_saturated,
     input  wire number_not_finite,
     // What they are worth
-    output wire signed [26:0] value,
+    output reg  signed [26:0] value,
     output wire saturated,
     output wire not_finite,
     // Curve: first number of each segment, 27 bits each, the count of segments, the end of the last one
@@ -80,7 +80,6 @@ module sptfra_curve #(
     reg signed [26:0] value_3;
     reg signed [26:0] value_4;
     reg signed [26:0] value_5;
-    reg signed [26:0] value_6;
     reg [5:0] shift_2;
     reg [5:0] shift_3;
     reg [5:0] shift_4;
@@ -110,14 +109,13 @@ module sptfra_curve #(
         value_4 <= value_3;
         rise_5 <= product_4 >>> shift_4;
         value_5 <= value_4;
-        value_6 <= value_5 + rise_half[27:1];
+        value <= value_5 + rise_half[27:1];
     end
 
     // ---- Beside it
     reg [STAGES:1] saturated_to;
     reg [STAGES:1] not_finite_to;
 
-    assign value = value_6;
     assign saturated = saturated_to[STAGES];
     assign not_finite = not_finite_to[STAGES];
 

@@ -45,10 +45,10 @@ module sptfra_replace #(
     output wire out_valid,
     output wire out_last,
     output reg  out_bad_length,
-    output wire [26:0] out_stress,
-    output wire out_saturated,
-    output wire out_not_finite,
-    output wire out_replaced // a sum took the reading's place
+    output reg  [26:0] out_stress,
+    output reg  out_saturated,
+    output reg  out_not_finite,
+    output reg  out_replaced // a sum took the reading's place
 );
 
     localparam signed [47:0] MOST = {{21{STRESS_BOUND[26]}}, STRESS_BOUND};
@@ -204,39 +204,31 @@ module sptfra_replace #(
     reg [4:2] valid;
     reg [4:1] lasts;
     reg [3:2] replaces;
-    reg replaces_4;
     reg [4:0] shift_2;
     reg signed [47:0] sum_2;
     reg signed [47:0] sum_3;
     reg [28:0] read_2;
     reg [28:0] read_3;
-    reg signed [26:0] stress_4;
-    reg saturated_4;
-    reg not_finite_4;
     wire above = (sum_3 > MOST);
     wire below = (sum_3 < -MOST);
     wire signed [26:0] clipped = above ? STRESS_BOUND : below ? -STRESS_BOUND : $signed(sum_3[26:0]);
 
     assign out_valid = valid[4];
     assign out_last = lasts[4];
-    assign out_stress = stress_4;
-    assign out_saturated = saturated_4;
-    assign out_not_finite = not_finite_4;
-    assign out_replaced = replaces_4;
 
     always @(posedge clock) begin
         valid <= {valid[3:2], valid_1};
         lasts <= {lasts[3:1], replays_last};
         replaces <= {replaces[2], dead_1};
-        replaces_4 <= replaces[3];
+        out_replaced <= replaces[3];
         read_2 <= kept;
         read_3 <= read_2;
         shift_2 <= shift_1;
         sum_2 <= $signed(waiting[47:0]) + half_1;
         sum_3 <= sum_2 >>> shift_2;
-        stress_4 <= replaces[3] ? clipped : $signed(read_3[26:0]);
-        saturated_4 <= replaces[3] ? above || below : read_3[27];
-        not_finite_4 <= !replaces[3] && read_3[28];
+        out_stress <= replaces[3] ? clipped : $signed(read_3[26:0]);
+        out_saturated <= replaces[3] ? above || below : read_3[27];
+        out_not_finite <= !replaces[3] && read_3[28];
         if (reset) begin
             valid <= 3'd0;
             lasts <= 4'd0;

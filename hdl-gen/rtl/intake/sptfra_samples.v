@@ -55,7 +55,7 @@ module sptfra_samples #(
     input  wire value_ends,
     // Of a calibration in RAM: see sptfra_banks
     output wire [TAXEL_WIDTH-1:0] exponent_taxel,
-    output wire [TAXEL_WIDTH-1:0] gain_taxel,
+    output reg  [TAXEL_WIDTH-1:0] gain_taxel,
     input  wire [OFFSET_BITS+27:0] bank_constants,
     input  wire [27*(1<<LEVELS)+60:0] bank_curve,
     output wire [LEVELS-1:0] segment,
@@ -182,23 +182,21 @@ module sptfra_samples #(
 
     // ---- Counts to stress. Exponent, gain and offset come a cycle after their taxel
     reg [TAXEL_WIDTH-1:0] sampled;
-    reg [TAXEL_WIDTH-1:0] valued;
 
-    assign exponent_taxel = (SHIFTS != 0) ? valued : sampled;
-    assign gain_taxel = valued;
+    assign exponent_taxel = (SHIFTS != 0) ? gain_taxel : sampled;
 
     always @(posedge clock) begin
         if (sample_taken) begin
             sampled <= sampled + 1'b1;
         end
         if (value_taken) begin
-            valued <= valued + 1'b1;
+            gain_taxel <= gain_taxel + 1'b1;
         end
         if (reset || sample_ends) begin
             sampled <= {TAXEL_WIDTH{1'b0}};
         end
         if (reset || value_ends) begin
-            valued <= {TAXEL_WIDTH{1'b0}};
+            gain_taxel <= {TAXEL_WIDTH{1'b0}};
         end
     end
 

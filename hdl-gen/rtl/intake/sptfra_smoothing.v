@@ -37,7 +37,7 @@ module sptfra_smoothing #(
     // The same, each with its averages
     output wire out_takes,
     output wire out_ends,
-    output wire out_bad_length,
+    output reg  out_bad_length,
     output wire [27*SAMPLES-1:0] out_stresses,
     output wire [27*SAMPLES-1:0] out_averages,
     output wire [FLAGS-1:0] out_flags,
@@ -62,7 +62,6 @@ module sptfra_smoothing #(
     reg holds; // a first frame has been averaged
     reg bank_averaged; // the bank's frame was made of averages
     reg is_bad; // so far
-    reg is_bad_length;
     reg [SETTLES:1] takes;
     reg [SETTLES:1] ends;
     reg [4*FLAGS-1:0] flags; // of stages 1 to 4
@@ -72,7 +71,6 @@ module sptfra_smoothing #(
 
     assign out_takes = takes[4];
     assign out_ends = ends[4];
-    assign out_bad_length = is_bad_length;
     assign out_flags = flags[4*FLAGS-1 -: FLAGS];
 
     sptfra_ram #(
@@ -187,7 +185,7 @@ module sptfra_smoothing #(
     always @(posedge clock) begin
         settles <= {settles[1:0], ends[SETTLES]};
         if (ends[SETTLES]) begin
-            is_good <= !is_bad && !is_bad_length;
+            is_good <= !is_bad && !out_bad_length;
             taken_rate <= restarts ? 4'd0 : rate_held;
         end
         lessened <= variance - (variance >> taken_rate);
@@ -216,7 +214,7 @@ module sptfra_smoothing #(
         end
         if (in_ends) begin
             busy <= 1'b1;
-            is_bad_length <= in_bad_length;
+            out_bad_length <= in_bad_length;
         end
         if (reset || in_ends) begin
             place <= {PLACE_WIDTH{1'b0}};
@@ -236,7 +234,7 @@ module sptfra_smoothing #(
         if (ends[SETTLES]) begin
             decided <= 1'b1;
             averaged <= !restarts;
-            if (!is_bad && !is_bad_length) begin
+            if (!is_bad && !out_bad_length) begin
                 bank <= !bank;
                 bank_averaged <= !restarts;
                 holds <= 1'b1;

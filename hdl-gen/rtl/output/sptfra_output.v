@@ -58,8 +58,8 @@ module sptfra_output #(
     input  wire signed [17:0] mu_x, // 16 fraction bits
     input  wire signed [17:0] mu_y,
     // Field memory: after rewind, the first beat's forces; after each step, the next ones
-    output wire signed [17:0] field_mu_x, // of the frame going out
-    output wire signed [17:0] field_mu_y,
+    output reg  signed [17:0] field_mu_x, // of the frame going out
+    output reg  signed [17:0] field_mu_y,
     output wire field_enable,
     output wire field_rewind,
     output wire field_step,
@@ -104,8 +104,6 @@ module sptfra_output #(
     reg signed [31:0] held_angle;
     reg [63:0] held_error;
     reg signed [9:0] held_error_exponent;
-    reg signed [17:0] held_mu_x;
-    reg signed [17:0] held_mu_y;
 
     // The beat, one cycle after it is asked of the field memory: index k is k cycles after that
     reg issued;
@@ -134,8 +132,6 @@ module sptfra_output #(
     end
 
     assign idle = !busy && !issued && !valid[1] && !valid[2]; // the last beat no longer needs what is held
-    assign field_mu_x = held_mu_x;
-    assign field_mu_y = held_mu_y;
     assign field_enable = advance;
     assign field_rewind = start;
     assign field_step = busy && advance && reads;
@@ -173,8 +169,8 @@ module sptfra_output #(
             held_angle <= angle;
             held_error <= error_value;
             held_error_exponent <= error_exponent;
-            held_mu_x <= mu_x;
-            held_mu_y <= mu_y;
+            field_mu_x <= mu_x;
+            field_mu_y <= mu_y;
         end
         if (reset) begin
             busy <= 1'b0;
@@ -265,11 +261,11 @@ module sptfra_output #(
                         summary_exponent_3 <= ANGLE_EXPONENT;
                     end
                     4'd10: begin
-                        summary_3 <= { {46{held_mu_x[17]}}, held_mu_x};
+                        summary_3 <= { {46{field_mu_x[17]}}, field_mu_x};
                         summary_exponent_3 <= FRICTION_EXPONENT;
                     end
                     4'd11: begin
-                        summary_3 <= { {46{held_mu_y[17]}}, held_mu_y};
+                        summary_3 <= { {46{field_mu_y[17]}}, field_mu_y};
                         summary_exponent_3 <= FRICTION_EXPONENT;
                     end
                     4'd12: begin

@@ -334,8 +334,8 @@ fn a_shipped_design_is_hardly_later_and_as_often() {
 fn faults_are_noticed() {
     let faults = [
         ("bank <= !bank;", "bank <= bank;"),
-        ("if (!is_bad && !is_bad_length) begin", "if (!is_bad_length) begin"),
-        ("if (!is_bad && !is_bad_length) begin", "if (!is_bad) begin"),
+        ("if (!is_bad && !out_bad_length) begin", "if (!out_bad_length) begin"),
+        ("if (!is_bad && !out_bad_length) begin", "if (!is_bad) begin"),
         ("bank_averaged <= !restarts;", "bank_averaged <= 1'b1;"),
         ("            holds <= 1'b0;\n", ""),
         ("wire restarts = !holds || ", "wire restarts = !holds && "),

@@ -178,9 +178,9 @@ fn soft_resets_on_each_others_heels_cut_no_packet() {
 fn a_gate_that_cuts_packets_is_noticed() {
     let subject = &subjects()[0];
     let faults = [
-        ("wire out_open = !waiting || out_packet;", "wire out_open = !waiting;"),
-        ("waiting && !out_packet && !resets", "waiting && !resets"),
-        ("discards <= in_packet_next;", "discards <= 1'b0;"),
+        ("wire out_open = !resetting || sending;", "wire out_open = !resetting;"),
+        ("resetting && !sending && !core_reset", "resetting && !core_reset"),
+        ("discarding <= in_packet_next;", "discarding <= 1'b0;"),
         ("core_s_tvalid = s_tvalid && in_open", "core_s_tvalid = s_tvalid"),
     ];
     for (from, to) in some_faults(faults, |&(from, _)| ("sptfra_stream_gate", from)) {
