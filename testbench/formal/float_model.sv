@@ -3,7 +3,6 @@
 // The converter of Bz with its function left out: three bits of a word come out after as many cycles.
 module sptfra_float_to_fixed (
     input wire clock,
-    input wire enable,
     input wire [31:0] float_bits,
     input wire signed [9:0] shift,
     input wire [26:0] limit,
@@ -18,9 +17,7 @@ module sptfra_float_to_fixed (
     assign not_finite = stages[14];
 
     always @(posedge clock) begin
-        if (enable) begin
-            stages <= {stages[11:0], float_bits[2:0]};
-        end
+        stages <= {stages[11:0], float_bits[2:0]};
     end
 
 endmodule

@@ -141,7 +141,13 @@ impl Parts {
         let mut taken = BTreeSet::new();
         for atom in &self.atoms {
             let name = match atom.name.split_once('$') {
-                _ if atom.kind == AtomKind::Constant => atom.name.replace('$', "_").to_uppercase(),
+                // An element of an array stands as its value where it is used.
+                Some(_) if atom.kind == AtomKind::Constant => {
+                    let name = constant(&atom.literal, atom.value)?;
+                    symbols.insert(atom.name.clone(), Symbol { name, kind: atom.value });
+                    continue;
+                }
+                None if atom.kind == AtomKind::Constant => atom.name.to_uppercase(),
                 Some((register, "d" | "q")) => register.to_owned(),
                 Some((_, "clock")) => continue,
                 Some(_) => return Err(format!("`{}` is a signal array", atom.name)),
@@ -188,6 +194,7 @@ impl Parts {
             let Some(Symbol { name, kind }) = symbols.get(&atom.name) else { continue };
             let range = range(*kind);
             match atom.kind {
+                AtomKind::Constant if atom.name.contains('$') => {}
                 AtomKind::Constant => {
                     let value = constant(&atom.literal, *kind)?;
                     constants.push(format!("    localparam {range}{name} = {value};"));

@@ -48,7 +48,7 @@ fn says_what_the_references_say() -> Result<(), CoreError> {
         ("sptfra_cordic.v", format!("{} fraction bits", cordic::ANGLE_FRACTION_BITS)),
         ("sptfra_cordic.v", format!("{} micro-rotations", cordic::ITERATIONS)),
         ("sptfra_cordic.v", format!("times {}", cordic::CORDIC_GAIN)),
-        ("sptfra_float_to_fixed.v", format!("Latency {} enabled cycles", float_to_fixed::LATENCY)),
+        ("sptfra_float_to_fixed.v", format!("Latency {} cycles", float_to_fixed::LATENCY)),
         ("sptfra_float_to_fixed.v", format!("to {}-bit fixed point", float_to_fixed::FIXED_BITS)),
         ("sptfra_fixed_to_float.v", format!("Latency {} enabled cycles", fixed_to_float::LATENCY)),
     ] {

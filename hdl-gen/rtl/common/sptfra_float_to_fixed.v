@@ -3,7 +3,7 @@
 //
 // float32 to 27-bit fixed point: fixed = float_bits * 2^shift, rounded half away from zero, clipped to +-limit.
 //
-// Latency 5 enabled cycles (distance, unpack, shift, round, clip), one value an enabled cycle. Denormals count as zero.
+// Latency 5 cycles (distance, unpack, shift, round, clip), one value a cycle. Denormals count as zero.
 // saturated: the rounded magnitude is limit or more. NaN gives 0 with not_finite; an infinity gives +-limit with
 // saturated and not_finite.
 
@@ -11,7 +11,6 @@
 
 module sptfra_float_to_fixed (
     input  wire clock,                // rising edge
-    input  wire enable,               // every stage advances; else all hold
     input  wire [31:0] float_bits,    // IEEE 754 single precision
     input  wire signed [9:0] shift,   // the result's binary point; sampled with float_bits
     input  wire [26:0] limit,         // largest magnitude, below 2^26; constant while conversions are under way
@@ -46,10 +45,8 @@ module sptfra_float_to_fixed (
     wire signed [11:0] shift_wide = $signed({{2{shift[9]}}, shift});
 
     always @(posedge clock) begin
-        if (enable) begin
-            float_d <= float_bits;
-            distance <= (12'd153 - exponent_bits) - $unsigned(shift_wide);
-        end
+        float_d <= float_bits;
+        distance <= (12'd153 - exponent_bits) - $unsigned(shift_wide);
     end
 
     // unpack
@@ -60,42 +57,36 @@ module sptfra_float_to_fixed (
     wire too_small = !too_large && (|distance[10:5]);
 
     always @(posedge clock) begin
-        if (enable) begin
-            negative_u <= float_d[31];
-            not_finite_u <= is_special;
-            right <= distance[4:0];
-            overflow_u <= too_large && !is_zero;
-            significand <= {1'b0, float_d[22:0]} | 24'h800000;
-            if (is_zero || too_small) begin
-                significand <= 24'd0;
-            end
-            if (is_special) begin
-                significand <= 24'd0;
-                overflow_u <= !(|float_d[22:0]);
-            end
+        negative_u <= float_d[31];
+        not_finite_u <= is_special;
+        right <= distance[4:0];
+        overflow_u <= too_large && !is_zero;
+        significand <= {1'b0, float_d[22:0]} | 24'h800000;
+        if (is_zero || too_small) begin
+            significand <= 24'd0;
+        end
+        if (is_special) begin
+            significand <= 24'd0;
+            overflow_u <= !(|float_d[22:0]);
         end
     end
 
     // shift
     always @(posedge clock) begin
-        if (enable) begin
-            negative_s <= negative_u;
-            not_finite_s <= not_finite_u;
-            overflow_s <= overflow_u;
-            doubled <= ({4'd0, significand} << 4) >> right;
-        end
+        negative_s <= negative_u;
+        not_finite_s <= not_finite_u;
+        overflow_s <= overflow_u;
+        doubled <= ({4'd0, significand} << 4) >> right;
     end
 
     // round half away from zero; the comparison with what is rounded to limit does not wait for that
     wire [27:0] threshold = ({1'b0, limit} << 1) - 28'd1;
 
     always @(posedge clock) begin
-        if (enable) begin
-            negative_r <= negative_s;
-            not_finite_r <= not_finite_s;
-            over <= overflow_s || (doubled >= threshold);
-            rounded <= doubled[27:1] + {26'd0, doubled[0]};
-        end
+        negative_r <= negative_s;
+        not_finite_r <= not_finite_s;
+        over <= overflow_s || (doubled >= threshold);
+        rounded <= doubled[27:1] + {26'd0, doubled[0]};
     end
 
     // clip, negate
@@ -110,14 +101,12 @@ module sptfra_float_to_fixed (
     wire signed [26:0] positive = $signed(magnitude);
 
     always @(posedge clock) begin
-        if (enable) begin
-            clipped <= over;
-            not_finite_c <= not_finite_r;
-            if (negative_r) begin
-                value <= -positive;
-            end else begin
-                value <= positive;
-            end
+        clipped <= over;
+        not_finite_c <= not_finite_r;
+        if (negative_r) begin
+            value <= -positive;
+        end else begin
+            value <= positive;
         end
     end
 

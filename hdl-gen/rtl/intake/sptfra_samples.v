@@ -107,7 +107,6 @@ module sptfra_samples #(
     if (SAMPLE == 0) begin : gen_float
         sptfra_float_to_fixed float_to_fixed (
             .clock      (clock),
-            .enable     (1'b1),
             .float_bits (decoded),
             .shift      (shift),
             .limit      (limit),

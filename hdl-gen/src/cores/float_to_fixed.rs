@@ -1,6 +1,6 @@
 //! float32 to 27-bit fixed point, scaled by a power of two, rounded half away from zero and clipped.
 
-/// Enabled cycles from `float_bits` to `fixed`; one conversion a cycle.
+/// Cycles from `float_bits` to `fixed`; one conversion a cycle.
 pub const LATENCY: u32 = 5;
 
 /// Bits of `fixed`, sign included.

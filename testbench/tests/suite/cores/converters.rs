@@ -1,4 +1,4 @@
-//! Runs of the number converters: pipelines that advance only when enabled.
+//! Runs of the number converters, which are pipelines. The one to float32 advances only when enabled.
 
 use std::collections::VecDeque;
 
@@ -16,7 +16,7 @@ fn enabled(rng: &mut ChaCha8Rng, cycle: usize) -> bool {
 pub fn float_to_fixed() -> Run {
     let mut run = Run::new(
         "sptfra_float_to_fixed",
-        &[("enable", 1), ("float_bits", 32), ("shift", 10), ("limit", 27)],
+        &[("float_bits", 32), ("shift", 10), ("limit", 27)],
         &[("fixed", 27), ("saturated", 1), ("not_finite", 1)],
     );
     let mut rng = ChaCha8Rng::seed_from_u64(6);
@@ -54,8 +54,7 @@ pub fn float_to_fixed() -> Run {
     let mut shown: Option<float_to_fixed::Converted> = None;
     // The limit stays while conversions are under way: after a change, those are not judged.
     let mut settled = 0;
-    for cycle in 0..45_000 {
-        let enable = enabled(&mut rng, cycle);
+    for _ in 0..45_000 {
         let (bits, shift) = if rng.random_bool(0.8) {
             // An exponent for which the result is around its useful range.
             let shift = rng.random_range(-120..=120);
@@ -76,22 +75,20 @@ pub fn float_to_fixed() -> Run {
             settled = 0;
         }
         run.push(
-            &[u64::from(enable), u64::from(bits), shift as u64, u64::from(limit)],
+            &[u64::from(bits), shift as u64, u64::from(limit)],
             &[
                 shown.map(|shown| shown.fixed as u64),
                 shown.map(|shown| u64::from(shown.saturated)),
                 shown.map(|shown| u64::from(shown.not_finite)),
             ],
         );
-        if enable {
-            pipeline.push_back((bits, shift));
-            if pipeline.len() == stages
-                && let Some((bits, shift)) = pipeline.pop_front()
-            {
-                settled += 1;
-                shown = (settled > stages).then(|| float_to_fixed::convert(bits, shift, limit));
-                run.results += usize::from(shown.is_some());
-            }
+        pipeline.push_back((bits, shift));
+        if pipeline.len() == stages
+            && let Some((bits, shift)) = pipeline.pop_front()
+        {
+            settled += 1;
+            shown = (settled > stages).then(|| float_to_fixed::convert(bits, shift, limit));
+            run.results += usize::from(shown.is_some());
         }
     }
     run
