@@ -16,10 +16,7 @@ module sptfra_banks #(
     parameter OFFSET_BITS = 29,
     // Places of the map, 0 without one, and its content at power-up: see sptfra_dead_bank
     parameter REPLACEABLE = 0,
-    parameter [3:0] REPLACED_COUNT = 4'd0,
-    parameter [4:0] REPLACED_SHIFT = 5'd17,
-    parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
-        = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
+    parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)+15:0] REPLACED = 0,
     // Room for 2^CURVE_LEVELS segments, 0 without a curve, and its content at power-up: see sptfra_curve_bank
     parameter CURVE_LEVELS = 0,
     parameter [6:0] CURVE_COUNT = 7'd1,
@@ -175,9 +172,9 @@ module sptfra_banks #(
             .TAXELS       (TAXELS),
             .REPLACEABLE  (REPLACEABLE),
             .FIRST        (FIRST_OF_MAP[15:0]),
-            .COUNT        (REPLACED_COUNT),
-            .WEIGHT_SHIFT (REPLACED_SHIFT),
-            .NUMBERS      (REPLACED_TAXELS),
+            .COUNT        (REPLACED[3:0]),
+            .WEIGHT_SHIFT (REPLACED[8:4]),
+            .NUMBERS      (REPLACED[16 +: 16*REPLACEABLE]),
             .ROM_DIR      (ROM_DIR),
             .ROM_NAME     (ROM_NAME)
         ) dead_bank (
@@ -200,7 +197,7 @@ module sptfra_banks #(
         assign count = 4'd0;
         assign weight_shift = 5'd0;
         assign numbers = {16*PLACES{1'b0}};
-        wire _unused_map = &{1'b0, FIRST_OF_MAP, REPLACED_COUNT, REPLACED_SHIFT, REPLACED_TAXELS};
+        wire _unused_map = &{1'b0, FIRST_OF_MAP, REPLACED};
     end
     if (CURVE_LEVELS != 0) begin : gen_curve
         wire [55:0] more = command[COMMAND_BITS-1 -: 56];

@@ -40,10 +40,7 @@ module sptfra_bz #(
     // Dead taxels: see sptfra_replace; with MAPPED the others are the content of the banks at power-up
     parameter REPLACEABLE = 0,
     parameter MAPPED = 0,
-    parameter [3:0] REPLACED_COUNT = 4'd0,
-    parameter [4:0] REPLACED_SHIFT = 5'd17,
-    parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
-        = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
+    parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)+15:0] REPLACED = 0,
     // Crosstalk, creep: see sptfra_frame_corrections. Smoothing: see sptfra_frame_writer
     parameter [59:0] CROSSTALK = 60'd0,
     parameter [45:0] CREEP = 46'd0,
@@ -248,9 +245,7 @@ module sptfra_bz #(
             .TAXELS           (TAXELS),
             .OFFSET_BITS      (OFFSET_BITS),
             .REPLACEABLE      ((MAPPED != 0) ? REPLACEABLE : 0),
-            .REPLACED_COUNT   (REPLACED_COUNT),
-            .REPLACED_SHIFT   (REPLACED_SHIFT),
-            .REPLACED_TAXELS  (REPLACED_TAXELS[16*((MAPPED != 0) ? PLACES : 1)-1:0]),
+            .REPLACED         (REPLACED[16*((MAPPED != 0) ? PLACES : 1)+15:0]),
             .CURVE_LEVELS     (CURVE_LEVELS),
             .CURVE_COUNT      (CURVE_COUNT),
             .CURVE_KNOTS      (CURVE_KNOTS),
@@ -305,9 +300,7 @@ module sptfra_bz #(
         .SCALED            (SCALED),
         .REPLACEABLE       (REPLACEABLE),
         .MAPPED            (MAPPED),
-        .REPLACED_COUNT    (REPLACED_COUNT),
-        .REPLACED_SHIFT    (REPLACED_SHIFT),
-        .REPLACED_TAXELS   (REPLACED_TAXELS),
+        .REPLACED          (REPLACED),
         .CROSSTALK         (CROSSTALK),
         .CREEP             (CREEP),
         .SMOOTHING         (SMOOTHING),

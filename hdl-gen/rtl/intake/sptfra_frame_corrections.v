@@ -18,10 +18,7 @@ module sptfra_frame_corrections #(
     // Places for dead taxels, 0 for none: see sptfra_replace
     parameter REPLACEABLE = 0,
     parameter MAPPED = 0,
-    parameter [3:0] REPLACED_COUNT = 4'd0,
-    parameter [4:0] REPLACED_SHIFT = 5'd17,
-    parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
-        = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
+    parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)+15:0] REPLACED = 0,
     // {fraction bits, factors of rows, columns and frame}, 0 without any: see sptfra_crosstalk
     parameter [59:0] CROSSTALK = 60'd0,
     // {strength, share}, 0 without any: see sptfra_creep
@@ -98,15 +95,13 @@ module sptfra_frame_corrections #(
 
     if (REPLACEABLE != 0) begin : gen_replace
         sptfra_replace #(
-            .TAXELS          (TAXELS),
-            .REPLACEABLE     (REPLACEABLE),
-            .MAPPED          (MAPPED),
-            .REPLACED_COUNT  (REPLACED_COUNT),
-            .REPLACED_SHIFT  (REPLACED_SHIFT),
-            .REPLACED_TAXELS (REPLACED_TAXELS),
-            .STRESS_BOUND    (STRESS_BOUND),
-            .ROM_DIR         (ROM_DIR),
-            .ROM_NAME        (ROM_NAME)
+            .TAXELS       (TAXELS),
+            .REPLACEABLE  (REPLACEABLE),
+            .MAPPED       (MAPPED),
+            .REPLACED     (REPLACED),
+            .STRESS_BOUND (STRESS_BOUND),
+            .ROM_DIR      (ROM_DIR),
+            .ROM_NAME     (ROM_NAME)
         ) replace (
             .clock          (clock),
             .reset          (reset),
@@ -131,8 +126,7 @@ module sptfra_frame_corrections #(
         assign {whole_takes, whole_ends, whole_bad_length, whole_replaced, replace_busy}
             = {in_takes, in_ends, in_bad_length, 2'b00};
         assign {whole_stresses, whole_saturated, whole_not_finite} = {own_stresses, own_saturated, own_not_finite};
-        wire _unused_map = &{1'b0, REPLACED_COUNT, REPLACED_SHIFT, REPLACED_TAXELS, MAPPED != 0, ROM_DIR != "",
-            ROM_NAME != "", taxel_ahead, map};
+        wire _unused_map = &{1'b0, REPLACED, MAPPED != 0, ROM_DIR != "", ROM_NAME != "", taxel_ahead, map};
     end
     if (CROSSTALK != 60'd0) begin : gen_crosstalk
         sptfra_crosstalk #(

@@ -24,10 +24,7 @@ module sptfra_frame_writer #(
     // Places for dead taxels, 0 for none: see sptfra_replace
     parameter REPLACEABLE = 0,
     parameter MAPPED = 0,
-    parameter [3:0] REPLACED_COUNT = 4'd0,
-    parameter [4:0] REPLACED_SHIFT = 5'd17,
-    parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
-        = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
+    parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)+15:0] REPLACED = 0,
     // Crosstalk, creep: see sptfra_frame_corrections
     parameter [59:0] CROSSTALK = 60'd0,
     parameter [45:0] CREEP = 46'd0,
@@ -108,9 +105,7 @@ module sptfra_frame_writer #(
         .STRESS_BOUND      (STRESS_BOUND),
         .REPLACEABLE       (REPLACEABLE),
         .MAPPED            (MAPPED),
-        .REPLACED_COUNT    (REPLACED_COUNT),
-        .REPLACED_SHIFT    (REPLACED_SHIFT),
-        .REPLACED_TAXELS   (REPLACED_TAXELS),
+        .REPLACED          (REPLACED),
         .CROSSTALK         (CROSSTALK),
         .CREEP             (CREEP),
         .ROM_DIR           (ROM_DIR),

@@ -16,10 +16,9 @@ module sptfra_replace #(
     parameter REPLACEABLE = 8,
     // 1: a calibration in RAM says which taxels are dead; 0: these are
     parameter MAPPED = 0,
-    // Dead taxels, fraction bits of the weights, numbers
-    parameter [3:0] REPLACED_COUNT = 4'd0,
-    parameter [4:0] REPLACED_SHIFT = 5'd17,
-    parameter [16*REPLACEABLE-1:0] REPLACED_TAXELS = {16*REPLACEABLE{1'b0}}, // ascending
+    // Words of 16 bits. The lowest: how many taxels are dead, 3:0, fraction bits of the weights, 8:4. Then the taxels,
+    // ascending
+    parameter [16*REPLACEABLE+15:0] REPLACED = 0,
     // Full scale: what a larger sum becomes
     parameter signed [26:0] STRESS_BOUND = 27'sd51200000,
     // Prefix of the ROM file names, and what they begin with
@@ -65,12 +64,11 @@ module sptfra_replace #(
 
     if (MAPPED != 0) begin : gen_map
         assign {weights_ahead, count, weight_shift, taxels} = map;
-        wire _unused_rom = &{1'b0, taxel_ahead, REPLACED_COUNT, REPLACED_SHIFT, REPLACED_TAXELS, ROM_DIR != "",
-            ROM_NAME != ""};
+        wire _unused_rom = &{1'b0, taxel_ahead, REPLACED, ROM_DIR != "", ROM_NAME != ""};
     end else begin : gen_neighbours
-        assign count = REPLACED_COUNT;
-        assign weight_shift = REPLACED_SHIFT;
-        assign taxels = REPLACED_TAXELS;
+        assign count = REPLACED[3:0];
+        assign weight_shift = REPLACED[8:4];
+        assign taxels = REPLACED[16 +: 16*REPLACEABLE];
 
         sptfra_rom #(
             .WIDTH         (18 * REPLACEABLE),

@@ -211,9 +211,7 @@ fn of_bank_curve(parameters: Parameters, map: &CurveMap) -> Parameters {
 
 /// Which taxels are replaced at power-up, in so many places.
 fn of_dead(parameters: Parameters, dead: &DeadPlan, places: usize) -> Parameters {
-    let numbers = dead.taxels.iter().copied().chain(std::iter::repeat(0)).take(places);
-    parameters
-        .unsigned("REPLACED_COUNT", 4, dead.taxels.len() as u64)
-        .unsigned("REPLACED_SHIFT", 5, dead.shift.into())
-        .list("REPLACED_TAXELS", 16, numbers.map(|number| number as u64))
+    let numbers = dead.taxels.iter().map(|&number| number as u64).chain(std::iter::repeat(0)).take(places);
+    let head = u64::from(dead.shift) << 4 | dead.taxels.len() as u64;
+    parameters.list("REPLACED", 16, std::iter::once(head).chain(numbers))
 }
