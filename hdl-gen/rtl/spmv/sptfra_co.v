@@ -73,8 +73,9 @@ module sptfra_co #(
     // ---- Cycles from the result bus, which simulations check: to the write of an operand, to all sums being complete
     localparam WRITE_LATENCY = (CHANNELS == 4) ? 1 : 3;
 
-    sptfra_check_delay #(
-        .CYCLES (WRITE_LATENCY)
+    sptfra_check_latency #(
+        .CYCLES    (WRITE_LATENCY),
+        .PIPELINED (1)
     ) check_write (
         .clock (clock),
         .reset (reset),
@@ -102,8 +103,9 @@ module sptfra_co #(
         end
     end
 
-    sptfra_check_delay #(
-        .CYCLES (SUMS_LATENCY)
+    sptfra_check_latency #(
+        .CYCLES    (SUMS_LATENCY),
+        .PIPELINED (1)
     ) check_sums (
         .clock (clock),
         .reset (reset),

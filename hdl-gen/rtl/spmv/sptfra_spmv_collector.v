@@ -255,8 +255,9 @@ module sptfra_spmv_collector #(
         end
     end
 
-    sptfra_check_delay #(
-        .CYCLES (TAKE_TO_BUS)
+    sptfra_check_latency #(
+        .CYCLES    (TAKE_TO_BUS),
+        .PIPELINED (1)
     ) check_latency (
         .clock (clock),
         .reset (reset),

@@ -79,8 +79,9 @@ module sptfra_unfold #(
 
     wire _unused_pipe = &{1'b0, next_routes, next_lasts, next_rows};
 
-    sptfra_check_delay #(
-        .CYCLES (LATENCY)
+    sptfra_check_latency #(
+        .CYCLES    (LATENCY),
+        .PIPELINED (1)
     ) check_latency (
         .clock (clock),
         .reset (reset),

@@ -141,8 +141,9 @@ module sptfra_we #(
             end
         end
 
-        sptfra_check_delay #(
-            .CYCLES (LATENCY)
+        sptfra_check_latency #(
+            .CYCLES    (LATENCY),
+            .PIPELINED (1)
         ) check_latency (
             .clock (clock),
             .reset (reset),
@@ -172,8 +173,9 @@ module sptfra_we #(
             end
         end
 
-        sptfra_check_delay #(
-            .CYCLES (LATENCY)
+        sptfra_check_latency #(
+            .CYCLES    (LATENCY),
+            .PIPELINED (1)
         ) check_latency (
             .clock (clock),
             .reset (reset),

@@ -3,7 +3,6 @@ rtl/sptfra_axis_skid.v
 rtl/sptfra_butterfly.v
 rtl/sptfra_bz.v
 rtl/sptfra_cean.v
-rtl/sptfra_check_delay.v
 rtl/sptfra_check_latency.v
 rtl/sptfra_co.v
 rtl/sptfra_context_field.v

@@ -18,7 +18,6 @@ foreach file {
     sptfra_butterfly.v
     sptfra_bz.v
     sptfra_cean.v
-    sptfra_check_delay.v
     sptfra_check_latency.v
     sptfra_co.v
     sptfra_context_field.v
