@@ -15,12 +15,12 @@ newtons, `F_z < 0` presses. Whatever is wrong with a design, a file or frames ra
 
 from importlib.metadata import version as _version
 
-from ._native import Design, Error, FrameLines, Past, Solver, beyond, calibrate, check, load_frames, rest, scene
+from ._native import Design, Error, FrameLines, Past, Solver, beyond, calibrate, check, load_frames, scene, unloaded
 from .forces import Forces, Status
 from .hardware import generate, plan, simulate
 from .plot import plot_contacts, plot_field
 from .recorded import calibrate_forces, calibrate_uniform
-from .results import Beyond, Finding, Plan, Recorded, Rest, Scene, Simulation, Spread, errors
+from .results import Beyond, Finding, Plan, Recorded, Scene, Simulation, Spread, Unloaded, errors
 
 #: That of the package, which is that of the commands.
 __version__ = _version("sptfra")
@@ -35,12 +35,12 @@ __all__ = [
     "Past",
     "Plan",
     "Recorded",
-    "Rest",
     "Scene",
     "Simulation",
     "Solver",
     "Spread",
     "Status",
+    "Unloaded",
     "__version__",
     "beyond",
     "calibrate",
@@ -53,7 +53,7 @@ __all__ = [
     "plan",
     "plot_contacts",
     "plot_field",
-    "rest",
     "scene",
     "simulate",
+    "unloaded",
 ]

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .forces import Forces
-from .results import Beyond, Finding, Rest, Scene
+from .results import Beyond, Finding, Scene, Unloaded
 
 class Error(ValueError):
     """What is wrong with a design, with frames, or with a file: what, where, and what to do."""
@@ -198,13 +198,13 @@ def scene(
     """
 
 def check(design: Design, frames: npt.ArrayLike) -> list[Finding]:
-    """What is wrong with frames, as far as they tell: unit, sign, tare, order of the taxels, end of the converter."""
+    """What is wrong with frames, as far as they show it: unit, sign, tare, order of the taxels, end of the converter."""
 
 def beyond(design: Design, frames: npt.ArrayLike) -> Beyond:
     """How much of frames lies beyond what the design is calibrated for: the full scale, or the ends of its curve."""
 
-def rest(design: Design, frames: npt.ArrayLike) -> Rest:
-    """What frames, ten or more, tell of a sensor on which nothing presses: each taxel's offset, noise and drift."""
+def unloaded(design: Design, frames: npt.ArrayLike) -> Unloaded:
+    """What ten or more frames of an unloaded sensor measure: each taxel's offset, noise and drift."""
 
 def calibrate(
     design: Design | str | os.PathLike[str],

@@ -20,7 +20,7 @@ from .forces import Forces
 class Finding(NamedTuple):
     """One thing that is suspicious in frames, with its likely cause and what to change."""
 
-    #: What it is about: empty, rest, range, sign, no_tension, tension, tare, dead, order, stuck, scaled, noise,
+    #: What it is about: empty, unloaded, range, sign, no_tension, tension, tare, dead, order, stuck, scaled, noise,
     #: contacts or crosstalk (`docs/reference/files.md`).
     kind: str
     message: str
@@ -41,7 +41,7 @@ class Beyond(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Rest:
+class Unloaded:
     """What frames of an unloaded sensor measure, in their units unless a name says pascals."""
 
     #: (rows, columns): mean of each taxel.

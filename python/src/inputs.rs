@@ -8,9 +8,9 @@ use golden::frames::{Layout, read_recording};
 use golden::geometry;
 use golden::matrices::Matrices;
 use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
-use golden::rest::{AtRest, TaxelAtRest};
 use golden::scene::{ChoiceError, Kind, Scene, SceneFrame};
 use golden::solver::{Solution, Status};
+use golden::unloaded::{Unloaded, UnloadedTaxel};
 use golden::words;
 use numpy::PyReadonlyArray2;
 use numpy::ndarray::ArrayView1;
@@ -112,19 +112,19 @@ pub fn beyond<'py>(py: Python<'py>, design: &Design, frames: &Bound<'py, PyAny>)
 
 /// What frames of an unloaded sensor measure.
 #[pyfunction]
-pub fn rest<'py>(py: Python<'py>, design: &Design, frames: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+pub fn unloaded<'py>(py: Python<'py>, design: &Design, frames: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let design = &design.inner;
     let frames = Frames::of(design, frames)?;
     frames.finite()?;
     let frames = frames.rows();
     let named = |error: String| format!("{}: {error}", design.name);
-    let found = AtRest::of(design, &frames).map_err(|error| raised(named(error)))?;
+    let found = Unloaded::of(design, &frames).map_err(|error| raised(named(error)))?;
     let (calibration, tared, refused) = match found.calibration(design, &frames) {
         Ok(calibration) => (calibration.to_csv(), Some(tared(design, calibration, &found)?), String::new()),
         Err(error) => (String::new(), None, named(error)),
     };
     let shape = [design.sensor.rows, design.sensor.columns];
-    let of = |value: fn(&TaxelAtRest) -> f64| array(py, found.taxels.iter().map(value).collect(), &shape);
+    let of = |value: fn(&UnloadedTaxel) -> f64| array(py, found.taxels.iter().map(value).collect(), &shape);
     let fields = PyDict::new(py);
     fields.set_item("offset", of(|each| each.offset)?)?;
     fields.set_item("noise", of(|each| each.noise)?)?;
@@ -141,14 +141,14 @@ pub fn rest<'py>(py: Python<'py>, design: &Design, frames: &Bound<'py, PyAny>) -
     fields.set_item("_calibration", calibration)?;
     fields.set_item("_tared", tared)?;
     fields.set_item("_refused", refused)?;
-    py.import("sptfra.results")?.getattr("Rest")?.call((), Some(&fields))
+    py.import("sptfra.results")?.getattr("Unloaded")?.call((), Some(&fields))
 }
 
 /// The design with the calibration of an unloaded sensor and the noise floor that suits it.
-fn tared(design: &golden::design::Design, calibration: Calibration, rest: &AtRest) -> PyResult<Design> {
+fn tared(design: &golden::design::Design, calibration: Calibration, measured: &Unloaded) -> PyResult<Design> {
     let mut tared = design.clone();
     tared.input.calibration = Some(calibration);
-    tared.algorithm.noise_floor_pa = rest.noise_floor_pa;
+    tared.algorithm.noise_floor_pa = measured.noise_floor_pa;
     let checked = golden::design::Design::from_parts(&tared.to_toml(), &design.name, &tared.files());
     Ok(Design::new(checked.map_err(raised)?))
 }

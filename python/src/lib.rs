@@ -30,7 +30,7 @@ mod native {
     #[pymodule_export]
     use super::hardware::{generate, inspect, simulate};
     #[pymodule_export]
-    use super::inputs::{FrameLines, beyond, check, errors, load_frames, rest, scene};
+    use super::inputs::{FrameLines, beyond, check, errors, load_frames, scene, unloaded};
     #[pymodule_export]
     use super::recorded::calibrate_recorded;
     #[pymodule_export]

@@ -38,7 +38,7 @@ class Judging(unittest.TestCase):
         offset = random.uniform(20, 90, 30)
         frames = np.round(offset + random.normal(0, 2, (200, 30)))
         frames[:, 17] = 0
-        found = sptfra.rest(counting, frames)
+        found = sptfra.unloaded(counting, frames)
         self.assertEqual((found.dead, found.stuck, found.noisy, found.warnings), ((17,), (), (), ()))
         self.assertEqual([each.shape for each in (found.offset, found.noise, found.drift)], [(5, 6)] * 3)
         alive = np.arange(30) != 17
@@ -50,7 +50,7 @@ class Judging(unittest.TestCase):
             file = Path(folder) / "pad.calibration.csv"
             found.save(file)
             gains = np.loadtxt(file, delimiter=",")
-            pascals = sptfra.rest(design(), -frames[:, :12])
+            pascals = sptfra.unloaded(design(), -frames[:, :12])
             with self.assertRaisesRegex(sptfra.Error, "pa_per_count"):
                 pascals.save(file)
             with self.assertRaisesRegex(sptfra.Error, "pa_per_count"):
@@ -63,7 +63,7 @@ class Judging(unittest.TestCase):
         self.assertEqual(gains[:, 0].tolist(), alive.astype(float).tolist())
         self.assertLess(abs(gains[alive, 1] + found.offset.ravel()[alive]).max(), 1e-9)
         with self.assertRaisesRegex(sptfra.Error, "3 frames without load: too few"):
-            sptfra.rest(counting, frames[:3])
+            sptfra.unloaded(counting, frames[:3])
 
     def test_numbers_of_columns_are_a_header(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -7,7 +7,7 @@ use golden::design::{Design, Expected, Input, MAX_NOISE, MeasuredNoise};
 use golden::numbers::counted;
 use golden::output::write_whole;
 use golden::resolved::{folder, keep_apart};
-use golden::rest::AtRest;
+use golden::unloaded::Unloaded;
 use serde::Serialize;
 
 use super::recording::Recording;
@@ -25,7 +25,7 @@ struct Report<'a> {
     design: &'a str,
     frames: usize,
     #[serde(flatten)]
-    rest: &'a AtRest,
+    measured: &'a Unloaded,
     beyond: Beyond,
     #[serde(skip_serializing_if = "Option::is_none")]
     calibration: Option<&'a Path>,
@@ -47,39 +47,39 @@ pub fn run(
     json: bool,
 ) -> message::Result {
     let named = |error| format!("{}: {error}", design.name);
-    let rest = AtRest::of(design, frames).map_err(named)?;
-    let of_contacts = loaded.map(|loaded| noise_of(design, &rest, loaded)).transpose()?;
+    let measured = Unloaded::of(design, frames).map_err(named)?;
+    let of_contacts = loaded.map(|loaded| noise_of(design, &measured, loaded)).transpose()?;
     let noise_of_contacts = of_contacts.map(MeasuredNoise::share);
     let mut faults = Vec::new();
-    if let Some(out) = out.filter(|_| rest.touched) {
+    if let Some(out) = out.filter(|_| measured.touched) {
         faults.push(format!(
             "{}: not written; take everything off the sensor and record it anew. If it does read this without load, --json has \
              the offset of each taxel, of which to make lines gain,offset",
             out.display()
         ));
     }
-    let out = out.filter(|_| !rest.touched);
+    let out = out.filter(|_| !measured.touched);
     if let Some(out) = out {
         let mut inputs = Design::inputs_at(path)?;
         inputs.push(recording.file.to_path_buf());
         keep_apart(out, &inputs)?;
-        let calibration = rest.calibration(design, frames).map_err(named)?;
+        let calibration = measured.calibration(design, frames).map_err(named)?;
         write_whole(out, calibration.to_csv().as_bytes())?;
     }
-    for warning in &rest.warnings {
+    for warning in &measured.warnings {
         eprintln!("warning: {warning}");
     }
     let beyond = beyond(design, frames);
     let report = Report {
         design: &design.name,
         frames: frames.len(),
-        rest: &rest,
+        measured: &measured,
         beyond,
         calibration: out,
         noise_of_contacts,
         expected_error: design
             .expected_error_at(noise_of_contacts.map_or(design.input.noise, shown))
-            .map(|expected| if rest.goes_on() { expected.of_single_frames() } else { expected }),
+            .map(|expected| if measured.goes_on() { expected.of_single_frames() } else { expected }),
     };
     if json {
         return Ok(Message { text: serde_json::to_string_pretty(&report)? + "\n", faults });
@@ -90,10 +90,10 @@ pub fn run(
     say!(
         text,
         "In {counts}: the median taxel varies by {:.2} and drifts by {:.2}; all of them with --json",
-        rest.noise,
-        rest.drift
+        measured.noise,
+        measured.drift
     );
-    for (kind, taxels) in [("Dead", &rest.dead), ("Stuck", &rest.stuck), ("Noisy", &rest.noisy)] {
+    for (kind, taxels) in [("Dead", &measured.dead), ("Stuck", &measured.stuck), ("Noisy", &measured.noisy)] {
         if !taxels.is_empty() {
             say!(text, "{kind}: {taxels:?}");
         }
@@ -105,10 +105,10 @@ pub fn run(
         let of = if noise_of_contacts.is_some() { "" } else { " This noise is the design's." };
         say!(text, "{expected}{of}");
     }
-    let full_scale = MeasuredNoise { deviation: rest.noise_pa, largest: design.hardware.full_scale_pa };
+    let full_scale = MeasuredNoise { deviation: measured.noise_pa, largest: design.hardware.full_scale_pa };
     let noise = match of_contacts {
         Some(noise) => Some((noise, "of typical contacts")),
-        None => (rest.noise_pa > 0.0)
+        None => (measured.noise_pa > 0.0)
             .then_some((full_scale, "of contacts at full scale; for yours, name their frames with --loaded")),
     };
     if noise.is_some() || out.is_some() {
@@ -124,13 +124,13 @@ pub fn run(
         say!(text, "calibration = {name:?}  # written; the file is found from the design's folder");
     }
     say!(text, "[algorithm]");
-    say!(text, "noise_floor_pa = {:.1}  # three standard deviations", ceil(rest.noise_floor_pa));
+    say!(text, "noise_floor_pa = {:.1}  # three standard deviations", ceil(measured.noise_floor_pa));
     Ok(Message { text, faults })
 }
 
 /// The noise in pascals, beside what typical contacts read.
-fn noise_of(design: &Design, rest: &AtRest, loaded: &[Vec<f64>]) -> Result<MeasuredNoise, String> {
-    let noise = rest.noise_of(design, loaded).map_err(|error| format!("--loaded: {error}"))?;
+fn noise_of(design: &Design, measured: &Unloaded, loaded: &[Vec<f64>]) -> Result<MeasuredNoise, String> {
+    let noise = measured.noise_of(design, loaded).map_err(|error| format!("--loaded: {error}"))?;
     let share = noise.share();
     if share > MAX_NOISE {
         return Err(format!(

@@ -4,7 +4,7 @@ use std::fs;
 
 use golden::design::Design;
 use golden::frames::write_frames;
-use golden::rest::AtRest;
+use golden::unloaded::Unloaded;
 
 use crate::support::{PLAIN, sptfra};
 
@@ -169,7 +169,7 @@ fn the_calibration_takes_the_offsets_off() {
     // More dead ones than can be replaced.
     let many = frames(100, |frame, taxel| if taxel < 9 { 0.0 } else { offset(taxel) + 2.0 * noise(frame, taxel) });
     let design = mat("");
-    let found = AtRest::of(&design, &many).unwrap();
+    let found = Unloaded::of(&design, &many).unwrap();
     assert!(found.calibration(&design, &many).unwrap_err().starts_with("9 taxels are dead or stuck, and 8 of"));
 }
 

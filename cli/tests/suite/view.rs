@@ -94,8 +94,7 @@ fn every_signal_of_the_views_is_in_the_trace() {
     let folder = tempfile::tempdir().expect("a folder");
     two_frames(folder.path());
     let reduced = fs::read_to_string(workspace("designs/small-control.toml")).expect("a design");
-    let paper =
-        reduced.replace("control = true\n", "").replace("kernel = \"point\"", "kernel = \"point\"\nplan = \"paper\"");
+    let paper = reduced.replace("control = true\n", "").replace("plan = \"reduced\"", "plan = \"paper\"");
     for (name, design, least) in [("reduced", &reduced, 45), ("paper", &paper, 20)] {
         fs::write(folder.path().join("design.toml"), design).expect("written");
         let trace = format!("{name}.vcd");

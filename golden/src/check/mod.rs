@@ -37,7 +37,7 @@ pub enum Kind {
     /// Every reading is zero.
     Empty,
     /// Readings that stay as they are but for noise, as where nothing presses.
-    Rest,
+    Unloaded,
     /// Readings far below or above the full scale.
     Range,
     /// The stresses add up to a pull.
@@ -190,7 +190,7 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
     let full_scale = design.hardware.full_scale_pa;
     if let Some(message) = quiet::check(design, &stress) {
         if !is_unloaded(design, frames) {
-            found(Kind::Rest, message);
+            found(Kind::Unloaded, message);
         }
         return findings;
     }

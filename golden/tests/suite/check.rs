@@ -423,7 +423,7 @@ fn rest_is_told_and_no_contact_is_made_of_it() {
     let noise = |frame: usize, taxel: usize| f64::from(((frame * 7919 + taxel * 104_729) % 1601) as u32) / 100.0 - 8.0;
     let rest: Vec<Vec<f64>> =
         (0..30).map(|frame| (0..design.sensor.taxels()).map(|taxel| noise(frame, taxel)).collect()).collect();
-    found(&design, &rest, &[Kind::Rest], &["nothing presses in 30 of 30 frames", "algorithm.noise_floor_pa = 6."]);
+    found(&design, &rest, &[Kind::Unloaded], &["nothing presses in 30 of 30 frames", "algorithm.noise_floor_pa = 6."]);
     let solver = |design: &Design| Solver::new(design).unwrap();
     let status = |design: &Design| solver(design).solve(&rest[0]).unwrap().status;
     assert!(!status(&design).contains(golden::solver::Status::NO_CONTACT));

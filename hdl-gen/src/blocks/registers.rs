@@ -39,7 +39,7 @@ pub struct Field {
     pub value: u32,
 }
 
-/// The fields of the read-only registers of a design with the given hash, sixteen hexadecimal digits. Truths are 0 or 1.
+/// The fields of the read-only registers of a design with the given hash of sixteen digits. Truths are 0 or 1.
 ///
 /// # Panics
 ///

@@ -3,8 +3,8 @@
 use golden::check::{Kind, beyond, check};
 use golden::design::{Curve, Design};
 use golden::matrices::Matrices;
-use golden::rest::AtRest;
 use golden::scene::{Scene, SensorErrors};
+use golden::unloaded::Unloaded;
 
 const TAXELS: usize = 78;
 const PA_PER_COUNT: f64 = -24.4;
@@ -62,7 +62,7 @@ fn noise_as_it_is_stated_is_nothing() {
         for part in 0..4 {
             let recording = frames(100, |frame, taxel| offset(taxel) + counts * noise(100 * part + frame, taxel));
             let mut design = mat("");
-            let rest = AtRest::of(&design, &recording).unwrap();
+            let rest = Unloaded::of(&design, &recording).unwrap();
             design.algorithm.noise_floor_pa = rest.noise_floor_pa;
             design.input.calibration = Some(rest.calibration(&design, &recording).unwrap());
             assert_eq!(kinds(&design, &recording), (vec![], String::new()), "{counts} counts");
@@ -77,7 +77,7 @@ fn rest_is_told_with_offsets_tared_and_clipped() {
     for (what, recording) in [("untared", &untared()), ("tared", &tared), ("clipped", &clipped)] {
         for more in ["", "tension = \"clipped\"\n"] {
             let (kinds, said) = kinds(&mat(more), recording);
-            assert_eq!(kinds, [Kind::Rest], "{what}: {said}");
+            assert_eq!(kinds, [Kind::Unloaded], "{what}: {said}");
             assert!(said.contains("--unloaded"), "{what}: {said}");
         }
     }
@@ -96,7 +96,7 @@ fn a_faint_contact_is_not_at_rest() {
     };
     for (share, held) in [(0.004, false), (0.008, false), (0.008, true), (0.03, true), (0.03, false)] {
         let (kinds, said) = kinds(&design, &pressed(share, held));
-        assert!(!kinds.contains(&Kind::Rest), "{share}, held {held}: {said}");
+        assert!(!kinds.contains(&Kind::Unloaded), "{share}, held {held}: {said}");
     }
 }
 
@@ -110,7 +110,7 @@ fn each_taxel_at_rest_is_measured() {
         62 => 4095.0 * uniform(frame, 7),
         _ => offset(taxel) + 2.0 * noise(frame, taxel) + if taxel == 10 { frame as f64 / 10.0 } else { 0.0 },
     });
-    let rest = AtRest::of(&design, &recording).unwrap();
+    let rest = Unloaded::of(&design, &recording).unwrap();
     assert_eq!((&rest.dead[..], &rest.stuck[..], &rest.noisy[..]), (&[5, 41][..], &[40][..], &[62][..]));
     for taxel in [0, 33, 77] {
         let found = rest.taxels[taxel];
@@ -130,25 +130,25 @@ fn each_taxel_at_rest_is_measured() {
 fn noise_that_is_clipped_or_goes_on_is_named() {
     let clipped = |least: f64, most: f64| frames(200, |frame, taxel| (4.0 * noise(frame, taxel)).clamp(least, most));
     for (least, most, which) in [(0.0, 100.0, "are 0, the least"), (-100.0, 0.0, "are 0, the largest")] {
-        let rest = AtRest::of(&mat(""), &clipped(least, most)).unwrap();
+        let rest = Unloaded::of(&mat(""), &clipped(least, most)).unwrap();
         assert!(rest.noise < 3.0 && !rest.touched, "{rest:?}");
         assert!(rest.warnings.iter().any(|warning| warning.contains(which)), "{:?}", rest.warnings);
     }
-    assert_eq!(AtRest::of(&mat(""), &clipped(-100.0, 100.0)).unwrap().warnings, [""; 0]);
+    assert_eq!(Unloaded::of(&mat(""), &clipped(-100.0, 100.0)).unwrap().warnings, [""; 0]);
     // Noise that goes on is averaged less.
     let slow = frames(200, |frame, taxel| (0..8).map(|back| 2.0 * noise(frame + back, taxel)).sum());
-    let rest = AtRest::of(&mat(""), &slow).unwrap();
+    let rest = Unloaded::of(&mat(""), &slow).unwrap();
     assert!((rest.correlation - 7.0 / 8.0).abs() < 0.1 && rest.goes_on(), "{}", rest.correlation);
     assert!(rest.warnings.iter().any(|warning| warning.contains("goes on from frame to frame")), "{:?}", rest.warnings);
     // Noise of half a step has few values.
     let coarse = frames(200, |frame, taxel| 0.5 * noise(frame, taxel));
-    assert_eq!(AtRest::of(&mat(""), &coarse).unwrap().warnings, [""; 0]);
+    assert_eq!(Unloaded::of(&mat(""), &coarse).unwrap().warnings, [""; 0]);
 }
 
 #[test]
 fn a_load_in_an_unloaded_recording_is_warned_of() {
     let design = mat("");
-    let warnings = |recording: &[Vec<f64>]| AtRest::of(&design, recording).unwrap().warnings.join("\n");
+    let warnings = |recording: &[Vec<f64>]| Unloaded::of(&design, recording).unwrap().warnings.join("\n");
     let bump = |taxel: usize| {
         let [x, y] = [(taxel % 6) as f64 - 2.5, (taxel / 6) as f64 - 6.0];
         1000.0 * (-(x * x + y * y) / 4.0).exp()
@@ -161,7 +161,7 @@ fn a_load_in_an_unloaded_recording_is_warned_of() {
     assert!(warnings(&touched(0)).contains("does something lie"), "{}", warnings(&touched(0)));
     let begins = frames(100, |frame, taxel| if frame == 0 { 0.0 } else { offset(taxel) + 2.0 * noise(frame, taxel) });
     assert!(warnings(&begins).contains("1 of 100 frames read otherwise than all others, the first is frame 1"));
-    assert!(AtRest::of(&design, &begins).unwrap().touched);
+    assert!(Unloaded::of(&design, &begins).unwrap().touched);
     let warm = frames(100, |frame, taxel| offset(taxel) + 2.0 * noise(frame, taxel) + 0.2 * frame as f64);
     assert!(warnings(&warm).contains("drifts by 13"), "{}", warnings(&warm));
     // A converter that clips at 0, or with steps larger than the noise: constant taxels need not be dead.
@@ -169,12 +169,12 @@ fn a_load_in_an_unloaded_recording_is_warned_of() {
     let coarse =
         frames(100, |frame, taxel| offset(taxel).round() + if taxel == 7 { 0.0 } else { 0.3 * noise(frame, taxel) });
     for recording in [clipped, coarse] {
-        let rest = AtRest::of(&design, &recording).unwrap();
+        let rest = Unloaded::of(&design, &recording).unwrap();
         assert!(rest.dead.is_empty() && rest.stuck.is_empty(), "{:?} {:?}", rest.dead, rest.stuck);
         assert!(rest.warnings.join("").contains("[7] never change"), "{:?}", rest.warnings);
     }
     assert!(warnings(&frames(20, |_, _| 0.0)).contains("never changes"));
-    assert!(AtRest::of(&design, &untared()[..3]).unwrap_err().starts_with("3 frames without load: too few"));
+    assert!(Unloaded::of(&design, &untared()[..3]).unwrap_err().starts_with("3 frames without load: too few"));
 }
 
 #[test]

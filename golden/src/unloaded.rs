@@ -36,7 +36,7 @@ const LOADED: f64 = 0.1;
 
 /// What one taxel reads unloaded, in the units of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct TaxelAtRest {
+pub struct UnloadedTaxel {
     /// Its number.
     pub taxel: usize,
     /// Mean of its readings.
@@ -51,9 +51,9 @@ pub struct TaxelAtRest {
 
 /// What frames of an unloaded sensor measure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct AtRest {
+pub struct Unloaded {
     /// A line for each taxel.
-    pub taxels: Vec<TaxelAtRest>,
+    pub taxels: Vec<UnloadedTaxel>,
     /// Taxels that never change while the others do, and those that the design says are dead.
     pub dead: Vec<usize>,
     /// Taxels that never change and read what no unloaded taxel does.
@@ -79,7 +79,7 @@ pub struct AtRest {
     pub touched: bool,
 }
 
-impl AtRest {
+impl Unloaded {
     /// Measures frames of the design's unloaded sensor, with values as they are in the file.
     ///
     /// # Errors
@@ -92,19 +92,19 @@ impl AtRest {
                 "{found} without load: too few to measure noise: record {FRAMES} at least, better 200"
             ));
         }
-        let all: Vec<TaxelAtRest> = (0..design.sensor.taxels()).map(|taxel| taxel_at_rest(frames, taxel)).collect();
+        let all: Vec<UnloadedTaxel> = (0..design.sensor.taxels()).map(|taxel| unloaded_taxel(frames, taxel)).collect();
         let known = |taxel: usize| design.input.dead.contains(&taxel);
         // Numbers with fractions have no known steps.
         let step = if frames.iter().flatten().all(|value| value.fract() == 0.0) { 1.0 } else { 0.0 };
         let middle = median(all.iter().filter(|each| !known(each.taxel)).map(|each| each.noise));
         let (dead, stuck, silent) = constant(design, frames, &all, middle, step);
         let works = |taxel: usize| !dead.contains(&taxel) && !stuck.contains(&taxel);
-        let live: Vec<TaxelAtRest> = all.iter().filter(|each| works(each.taxel)).copied().collect();
+        let live: Vec<UnloadedTaxel> = all.iter().filter(|each| works(each.taxel)).copied().collect();
         let noise = median(live.iter().map(|each| each.noise));
         let usual = noise.max(ROUNDING * step);
         let noisy: Vec<usize> =
             live.iter().filter(|each| usual > 0.0 && each.noise > NOISY * usual).map(|each| each.taxel).collect();
-        let pascals = |each: &TaxelAtRest| {
+        let pascals = |each: &UnloadedTaxel| {
             let of = |sign: f64| design.input.to_pa(each.taxel, each.offset + sign * each.noise.max(ROUNDING * step));
             0.5 * (of(1.0) - of(-1.0)).abs()
         };
@@ -143,14 +143,14 @@ impl AtRest {
     }
 
     /// Those that work.
-    fn live(&self) -> impl Iterator<Item = &TaxelAtRest> {
+    fn live(&self) -> impl Iterator<Item = &UnloadedTaxel> {
         self.taxels.iter().filter(|each| self.works(each.taxel))
     }
 
     /// Signs that something lay on the sensor or touched it.
     fn touches(&self, design: &Design, usual: f64) -> Vec<String> {
         let (mut said, full_scale) = (Vec::new(), design.hardware.full_scale_pa);
-        let live: Vec<&TaxelAtRest> = self.live().collect();
+        let live: Vec<&UnloadedTaxel> = self.live().collect();
         if self.noise_pa > LOUD * full_scale {
             said.push(format!(
                 "the median taxel varies by {:.1} Pa, more than a hundredth of hardware.full_scale_pa: did something touch \
@@ -311,7 +311,7 @@ impl AtRest {
     }
 }
 
-fn taxel_at_rest(frames: &[Vec<f64>], taxel: usize) -> TaxelAtRest {
+fn unloaded_taxel(frames: &[Vec<f64>], taxel: usize) -> UnloadedTaxel {
     let count = frames.len() as f64;
     let mean = |frames: &[Vec<f64>]| mean(frames.iter().map(|frame| frame[taxel]));
     let offset = mean(frames);
@@ -323,7 +323,7 @@ fn taxel_at_rest(frames: &[Vec<f64>], taxel: usize) -> TaxelAtRest {
     let squares: f64 = noise.iter().map(|value| value * value).sum();
     let products: f64 = noise.windows(2).map(|pair| pair[0] * pair[1]).sum();
     let third = frames.len() / 3;
-    TaxelAtRest {
+    UnloadedTaxel {
         taxel,
         offset,
         noise: (squares / (count - 2.0)).sqrt(),
@@ -336,12 +336,12 @@ fn taxel_at_rest(frames: &[Vec<f64>], taxel: usize) -> TaxelAtRest {
 fn constant(
     design: &Design,
     frames: &[Vec<f64>],
-    all: &[TaxelAtRest],
+    all: &[UnloadedTaxel],
     noise: f64,
     step: f64,
 ) -> (Vec<usize>, Vec<usize>, Vec<usize>) {
     let never = |taxel: usize| frames.iter().all(|frame| frame[taxel].to_bits() == frames[0][taxel].to_bits());
-    let others: Vec<&TaxelAtRest> = all.iter().filter(|each| !never(each.taxel)).collect();
+    let others: Vec<&UnloadedTaxel> = all.iter().filter(|each| !never(each.taxel)).collect();
     let middle = median(others.iter().map(|each| each.offset));
     let near = median(others.iter().map(|each| (each.offset - middle).abs())).max(noise).max(step);
     let least = frames.iter().flatten().copied().fold(f64::INFINITY, f64::min);
