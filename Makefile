@@ -167,7 +167,7 @@ BENCH_SOLVER  := $(addprefix designs/,paper.toml sensor1-reduced.toml sensor1-re
 	bed-mat.toml) xtask/designs/sensor1-fast-two.toml
 BENCH_DESIGNS := designs/sensor1-reduced.toml $(TEST_DESIGNS)/sensor2-reduced.toml designs/sensor1-fast.toml designs/sensor1-fast-64.toml \
 	designs/bed-mat.toml
-BENCH_CELLS   := sensor1-reduced sensor1-resultants sensor1-small sensor1-fast sensor1-fast-64 sensor1-fast-100 sensor1-wide
+BENCH_CELLS   := sensor1-reduced sensor1-resultants sensor1-fast sensor1-fast-64 sensor1-fast-100 sensor1-wide
 
 .PHONY: bench
 bench: tools ## Measure solver, generator, simulation, cycles and cells, into results/ (Yosys: half an hour)
