@@ -148,11 +148,11 @@ registers: tools build ## C header, page and IP-XACT file of a register bank, by
 	    tools/registers.sh "rtl-out/$$name/control/$$name.rdl" "$(TARGET)/registers/$$name"
 
 .PHONY: tools
-tools: ## Install Verilator, Yosys and Icarus Verilog where they are missing
+tools: ## Install Verilator and Yosys where they are missing
 	@tools/install.sh
 
 .PHONY: test-tools
-test-tools: ## What `tools` installs, and what only tests need: a browser, the system's Verilator, Python packages
+test-tools: ## What `tools` installs, and what only tests need: Icarus, Tcl, dtc, Arm compilers, a browser, Python packages
 	@tools/install.sh tests
 	@$(PIP_INSTALL) $(patsubst %,-r tools/requirements-%.txt,python book cocotb sweep)
 

@@ -14,8 +14,8 @@ extern "C" {
 
 /* Loads the gains and offsets of the file that a design names as its calibration, or of one of `sptfra export-calibration`: then the
  * dead taxels of its header are replaced, and no others, and a curve behind them is used, too. A header without dead
- * taxels, `gain,offset` alone, says that none is, even of those that the design's `dead` names: the file of `golden
- * bank` has them. `curve` is the file that the design names as its curve, or NULL: points stand in one file. What a
+ * taxels, `gain,offset` alone, says that none is, even of those that the design's `dead` names: the file of
+ * `sptfra export-calibration` has them. `curve` is the file that the design names as its curve, or NULL: points stand in one file. What a
  * file does not say stays as it was, and so does the noise floor if `noise_floor_pa` is 0; see
  * sptfra_load_bank_and_curve, as which it ends.
  *

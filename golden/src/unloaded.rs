@@ -228,7 +228,7 @@ impl Unloaded {
             if share > CUT && self.noise > 1.0 {
                 said.push(format!(
                     "{:.0} % of the readings are {end}, the {which} of all: the converter clips the noise there, which is larger \
-                     than measured, and shifts the offsets; let its range reach beyond rest",
+                     than measured, and shifts the offsets; let its range reach beyond the offsets",
                     100.0 * share
                 ));
             }
@@ -332,7 +332,7 @@ fn unloaded_taxel(frames: &[Vec<f64>], taxel: usize) -> UnloadedTaxel {
     }
 }
 
-/// Taxels that never change: the dead ones, the stuck ones, and those of which rest does not tell.
+/// Taxels that never change: the dead ones, the stuck ones, and those of which unloaded frames do not show it.
 fn constant(
     design: &Design,
     frames: &[Vec<f64>],

@@ -25,7 +25,7 @@ pub use beyond::{Beyond, beyond};
 pub(crate) use quiet::together;
 
 use crate::crosstalk::Crosstalk;
-use crate::design::{Design, Input, Tension};
+use crate::design::{Design, Input, NOISE_FLOOR_DIVISOR, Tension};
 use crate::matrices::Matrices;
 use crate::numbers::{counted, magnitude, mean};
 use crate::words::print_as_words;
@@ -108,8 +108,13 @@ const FAINT: f64 = 2e-3;
 ///
 /// `matrices` are those of the design; without them the order of the taxels is not looked at.
 pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) -> Vec<Finding> {
-    // Noise looks like one fault or another by chance.
-    if is_unloaded(design, frames) && quiet::check(design, &in_pascals(design, frames)).is_some() {
+    // Noise looks like one fault or another by chance. The floor that a design has by itself is nobody's measurement.
+    let usual = design.hardware.full_scale_pa / NOISE_FLOOR_DIVISOR;
+    if design.algorithm.noise_floor_pa > usual
+        && is_unloaded(design, frames)
+        && quiet::check(design, &in_pascals(design, frames)).is_some()
+        && scaled::check(frames).is_none()
+    {
         return Vec::new();
     }
     if let Some(message) = order::swapped(&design.sensor, frames) {
@@ -161,9 +166,13 @@ fn check_mended(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices
 /// Whether frames are those of an unloaded sensor, tared, with a noise floor above its noise.
 pub fn is_unloaded(design: &Design, frames: &[Vec<f64>]) -> bool {
     let floor = design.algorithm.noise_floor_pa;
-    let stress = in_pascals(design, frames).concat();
-    let square = mean(stress.iter().map(|stress| stress * stress));
-    square.sqrt() <= OF_FLOOR * floor && largest(&stress) <= FAR_ABOVE * floor
+    let stress = in_pascals(design, frames);
+    let rms = |values: &mut dyn Iterator<Item = f64>| mean(values.map(|stress| stress * stress)).sqrt();
+    // A taxel that is stuck above the floor is one of many.
+    let each = |taxel: usize| rms(&mut stress.iter().map(|frame| frame[taxel])) <= floor;
+    rms(&mut stress.iter().flatten().copied()) <= OF_FLOOR * floor
+        && stress.iter().all(|frame| largest(frame) <= FAR_ABOVE * floor)
+        && (0..design.sensor.taxels()).all(each)
 }
 
 fn in_pascals(design: &Design, frames: &[Vec<f64>]) -> Vec<Vec<f64>> {

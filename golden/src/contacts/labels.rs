@@ -87,15 +87,15 @@ mod tests {
     #[test]
     fn arms_that_meet_late_are_one() {
         assert_drawn(&["a.a", "a.a", "aaa"], 1);
-        // Three arms, the middle one first met by the right one, and a component between that keeps its own number.
+        // Three arms that meet below, and a component between them with a number of its own.
         assert_drawn(&["a.a.a.b", "a.aaa..", "a.a...c", "aaa...c"], 3);
-        // A spiral, whose labels are joined through others.
+        // A spiral: the fill turns all ways.
         assert_drawn(&["aaaaaaa", "......a", "aaaaa.a", "a...a.a", "a.aaa.a", "a.....a", "aaaaaaa"], 1);
     }
 
     #[test]
-    fn labels_joined_through_others_are_one() {
-        // Each row joins two labels that were joined to others before.
+    fn teeth_that_meet_are_one() {
+        // Teeth that meet row by row, and a taxel on its own.
         assert_drawn(&["a.a.a.a", "a.a.aaa", "a.aaa..", "aaa...b"], 2);
     }
 }

@@ -71,8 +71,8 @@ pub(super) struct SensorKeys {
     pub creep: Option<Creep>,
     /// The k of an exponential moving average of each taxel over the frames, with the weight 2^-k. A step of any taxel by more
     /// than 6 standard deviations of the `noise` restarts it. A frame that is short, not finite or dropped leaves it as it was.
-    /// With `scaling = "per_frame"` the core answers 4 cycles later. With `"fixed"` it is a cycle an orbit (up to four taxels;
-    /// one of the paper's plan) and 3, since the last reading may restart all. With `control = true` a register changes k.
+    /// With `scaling = "per_frame"` the core answers 4 cycles later. With `"fixed"` it answers at most a cycle an orbit (up to
+    /// four taxels; one of the paper's plan) and 3 later, since the last reading may restart all. With `control = true` a register changes k.
     #[schemars(range(min = 1, max = 8), extend("examples" = [4]))]
     pub smoothing: Option<u32>,
     /// Pascals of one count, negative where larger counts press. Without this key or `curve`, frames hold pascals.

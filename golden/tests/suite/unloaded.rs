@@ -3,7 +3,7 @@
 use golden::check::{Kind, beyond, check};
 use golden::design::{Curve, Design};
 use golden::matrices::Matrices;
-use golden::scene::{Scene, SensorErrors};
+use golden::scene::{Kind as Contacts, Scene, SceneFrame, SensorErrors};
 use golden::unloaded::Unloaded;
 
 const TAXELS: usize = 78;
@@ -67,6 +67,26 @@ fn noise_as_it_is_stated_is_nothing() {
             design.input.calibration = Some(rest.calibration(&design, &recording).unwrap());
             assert_eq!(kinds(&design, &recording), (vec![], String::new()), "{counts} counts");
         }
+    }
+}
+
+/// Neither a stuck taxel nor contacts that are scaled to 1 pass for noise, whether the floor is the design's own or stated.
+#[test]
+fn faults_below_the_floor_are_no_noise() {
+    let mut design = mat("");
+    design.algorithm.noise_floor_pa = 150.0;
+    let stuck = frames(100, |frame, taxel| if taxel == 40 { 18.0 } else { 2.0 * noise(frame, taxel) });
+    let (found, said) = kinds(&design, &stuck);
+    assert!(!found.is_empty(), "{said}");
+    let contacts = Contacts::MixedInside.frames(&design.sensor, 0.5, 1..41).unwrap();
+    let scaled = |frame: &SceneFrame| {
+        let mean = frame.stress.iter().sum::<f64>() / TAXELS as f64;
+        let peak = frame.stress.iter().fold(0.0_f64, |peak, stress| peak.max((stress - mean).abs()));
+        frame.stress.iter().map(|stress| (stress - mean) / peak).collect()
+    };
+    let scaled: Vec<Vec<f64>> = contacts.iter().map(scaled).collect();
+    for design in [design, mat("")] {
+        assert_eq!(kinds(&design, &scaled).0, [Kind::Scaled], "{}", design.algorithm.noise_floor_pa);
     }
 }
 
