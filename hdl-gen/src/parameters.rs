@@ -78,6 +78,15 @@ impl Parameters {
 
     /// Unsigned numbers of `bits` bits each, the first in the lowest bits, each on a line of its own with what it is of.
     pub fn table(self, name: &'static str, bits: u32, entries: &[(u64, String)]) -> Self {
+        self.lines(name, entries, |value| format!("{bits}'d{value}"))
+    }
+
+    /// The same of 32 bits each in hexadecimal.
+    pub fn words(self, name: &'static str, entries: &[(u64, String)]) -> Self {
+        self.lines(name, entries, |value| format!("32'h{value:08x}"))
+    }
+
+    fn lines(self, name: &'static str, entries: &[(u64, String)], shown: impl Fn(u64) -> String) -> Self {
         let mut text = "{".to_owned();
         let mut left = entries;
         while let Some(((value, comment), before)) = left.split_last() {
@@ -86,7 +95,7 @@ impl Parameters {
             let alike = 1 + before.iter().rev().take_while(is_alike).count();
             left = &left[..left.len() - alike];
             let comma = if left.is_empty() { "" } else { "," };
-            let number = if alike > 1 { format!("{{{alike}{{{bits}'d{value}}}}}") } else { format!("{bits}'d{value}") };
+            let number = if alike > 1 { format!("{{{alike}{{{}}}}}", shown(*value)) } else { shown(*value) };
             let comment = if comment.is_empty() { String::new() } else { format!(" // {}: {comment}", left.len()) };
             // Writing to a string cannot fail.
             let _ = write!(text, "\n            {number}{comma}{comment}");

@@ -45,6 +45,10 @@ module sptfra_grid_terms #(
     output reg  clipped // a u of the frame was
 );
 
+    if (SIDE != 13) begin : gen_check_side
+        sptfra_error_a_side_has_13_points invalid ();
+    end
+
     localparam integer REACH = SIDE / 2;
     localparam integer SHARE_SHIFT = 8; // dead zone and margin are 2^-8 of the largest and of the sum
     localparam integer U_BITS = FRACTION + 1; // of u, normalised

@@ -6,8 +6,9 @@
 // Two pipeline stages, each with a frame of its own. The summary computes friction and resultants. The output computes
 // the field as it leaves.
 //
-// Latency from answer_take to the output's start, if it is idle: EXPECTED_SUMMARY_LATENCY + 1 cycles; from there to the
-// first word EXPECTED_OUTPUT_LATENCY. Interval: that of the longer stage.
+// Latency from answer_take to the output's start, if it is idle and, with FIELD, the field is there:
+// EXPECTED_SUMMARY_LATENCY + 1 cycles; from there to the first word EXPECTED_OUTPUT_LATENCY. Interval: that of the
+// longer stage.
 
 `default_nettype none
 

@@ -155,6 +155,11 @@ module sptfra_spmv_collector #(
     end
 
     genvar index;
+    for (index = 0; index < 16; index = index + 1) begin : gen_check_shifts
+        if ((SHIFTS[6*index +: 6] < LEAST) || (SHIFTS[6*index +: 6] > LARGEST_SHIFT)) begin : gen_check
+            sptfra_error_each_shift_lies_from_the_least_to_the_largest invalid ();
+        end
+    end
     for (index = 0; index < PES; index = index + 1) begin : gen_select
         always @(posedge clock) begin
             if (fetch) begin

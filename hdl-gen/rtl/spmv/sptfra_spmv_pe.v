@@ -4,7 +4,7 @@
 // One SpMV PE: reads its own MCSR ROMs (values, columns, MACs per row), one multiply-accumulate a cycle in each of
 // its channels. Four channels take the parity components of the operand: same row, same column, own coefficient.
 //
-// Issue to result register: 7 cycles (ROM, address, operand memory, 3 for the MAC, carry). Initiation interval: 1.
+// Issue to result buffer: 7 cycles (ROM, address, operand memory, 3 for the MAC, carry). Initiation interval: 1.
 // Kinds of row segments: 0 row, 1 tail of a row begun in the PE before, 2 head of a row that the next PE
 // ends, 3 idle. A head is completed by the carry of the next PE, which is there in time by construction.
 

@@ -48,7 +48,7 @@ module sptfra_we #(
 
     if (CHANNELS == 4) begin : gen_folded
         // ---- Stage 1: |w|, and a cycle later y+. Stages 2 and 3: fold. The next result is two cycles behind, or more
-        reg [5:1] valid; // of |w|
+        reg [4:1] valid; // of |w|
         reg [ROW_WIDTH-1:0] orbit_1;
         reg [ROW_WIDTH-1:0] orbit_2;
         reg [ROW_WIDTH-1:0] orbit_3;
@@ -57,10 +57,10 @@ module sptfra_we #(
         genvar index;
 
         always @(posedge clock) begin
-            valid <= {valid[4:1], taxel_y};
+            valid <= {valid[3:1], taxel_y};
             {orbit_3, orbit_2, orbit_1} <= {orbit_2, orbit_1, taxel_row};
             if (reset) begin
-                valid <= 5'd0;
+                valid <= 4'd0;
             end
         end
 
@@ -119,13 +119,13 @@ module sptfra_we #(
         end
 
         sptfra_check_latency #(
-            .CYCLES    (LATENCY),
+            .CYCLES    (LATENCY - 1),
             .PIPELINED (1)
         ) check_latency (
             .clock (clock),
             .reset (reset),
-            .start (taxel_y),
-            .done  (valid[5])
+            .start (taxel_y || valid[1]),
+            .done  (write_valid)
         );
 
         wire _unused = &{1'b0, orbit_wide};

@@ -55,7 +55,7 @@ pub fn registers(of: &CalibrationPlan) -> Parameters {
         (steps >> 32, "steps of a count, high"),
     ];
     Parameters::new()
-        .table("CONSTANTS", 32, &words.map(|(word, of)| (word, of.to_owned())))
+        .words("CONSTANTS", &words.map(|(word, of)| (word, of.to_owned())))
         .some(curve_register(of), |all, [room, exponent, lsb]| {
             all.list("CURVE", 8, [room, exponent, lsb, 0].map(u64::from))
         })

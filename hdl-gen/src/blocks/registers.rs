@@ -89,5 +89,5 @@ pub fn parameters(plan: &Plan, constants: &[Field]) -> Parameters {
     }
     let drops = plan.streams().drops.into();
     let rate = plan.smoothing.as_ref().map_or(0, |of| of.rate.into());
-    Parameters::new().table("CONSTANTS", 32, &words).unsigned("DROPS", 1, drops).unsigned("SMOOTHING_RATE", 4, rate)
+    Parameters::new().words("CONSTANTS", &words).unsigned("DROPS", 1, drops).unsigned("SMOOTHING_RATE", 4, rate)
 }

@@ -70,7 +70,7 @@ pub fn start_to_issue(gap: u64) -> u64 {
 
 /// Without issue when the lanes pass from one program to the next, at least.
 pub const PROGRAM_GAP: u64 = 2;
-/// From the issue of a row's last MAC to its sum standing in the PE's result register.
+/// From the issue of a row's last MAC to its sum standing in the PE's result buffer.
 pub const ISSUE_TO_RESULT: u64 = 7;
 /// From taking a program's last result to taking the next program's first: the order is read from a ROM, whose address is
 /// there `ahead` or goes there then.

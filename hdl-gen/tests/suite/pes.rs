@@ -48,7 +48,7 @@ pub type Operands<'a> = dyn Fn(&Product, usize, usize) -> Sums + 'a;
 /// Runs the PEs' programs and the collector on vectors of `elements`. Of the matrices, which stand in the programs, only
 /// what PEs drop of a product is looked at.
 ///
-/// Panics where the hardware would go wrong: an operand is read before it is written, or a word never. A result register
+/// Panics where the hardware would go wrong: an operand is read before it is written, or a word never. A result buffer
 /// overflows, a result is taken too early, or two are taken in one cycle.
 pub fn execute(
     schedule: &Schedule,
@@ -176,7 +176,7 @@ fn complete_heads(pes: &mut [Pe]) {
     for pe in 0..count {
         for (issued, head) in std::mem::take(&mut pes[pe].heads) {
             let carries = &pes[(pe + 1) % count].carries;
-            // The carry register changes as late after a tail's last issue as the result register after a head's.
+            // The carry register changes as late after a tail's last issue as the result buffer after a head's.
             let tail = carries.iter().rfind(|carry| carry.issued < issued).expect("a tail before the head's end");
             let sums = std::array::from_fn(|channel| head[channel] + tail.sums[channel]);
             let waiting = |held: &&mut Held| held.from == issued + ISSUE_TO_RESULT;

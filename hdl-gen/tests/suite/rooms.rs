@@ -42,7 +42,7 @@ fn imports_point_one_way() {
 
 /// Templates and parameters of instances; nobody else.
 #[test]
-fn only_the_emitter_prints_verilog() {
+fn only_templates_and_parameters_print_verilog() {
     for room in ROOMS.into_iter().filter(|room| !["emit", "parameters"].contains(room)) {
         for (path, text) in texts(room) {
             let literal = ["'d{", "'sd{", "'h{", "'b{", "'{base}"].into_iter().find(|literal| text.contains(literal));

@@ -76,8 +76,8 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
         (
             reduced(),
             "sptfra_we",
-            "valid <= {valid[4:1], taxel_y};",
-            "valid <= {valid[4:2], taxel_y, taxel_y};",
+            "assign write_next = valid[3] || valid[4];",
+            "assign write_next = valid[3];",
             "check_latency.v",
         ),
         (paper(), "sptfra_we", "write_valid <= taxel_y;", "write_valid <= taxel_y && !write_valid;", "check_latency.v"),

@@ -7,7 +7,7 @@ use testbench::tools;
 use crate::support::{library_file, library_folders, look_in};
 
 /// Module, parameter, value, what the tool must name. A value that several modules share is looked at in one of them.
-const SENSELESS: [(&str, &str, &str, &str); 25] = [
+const SENSELESS: [(&str, &str, &str, &str); 27] = [
     ("bz", "COLUMNS", "1", "columns_and_rows_must_be_2_to_64"),
     ("frame_writer", "DATA_BITS", "36", "data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded"),
     ("frame_writer", "SAMPLES", "3", "samples_of_a_beat_must_be_1_2_4_or_8"),
@@ -20,6 +20,7 @@ const SENSELESS: [(&str, &str, &str, &str); 25] = [
     ("spmv_pe", "MIRROR_SIDE", "4", "only_a_square_grid_is_mirrored"),
     ("spmv_lane", "COEFFICIENT_BITS", "28", "two_multipliers_have_27_by_35_bits"),
     ("spmv_array", "LASTS", "1", "the_last_product_must_end_its_program"),
+    ("spmv_collector", "LEAST_SHIFT", "17", "each_shift_lies_from_the_least_to_the_largest"),
     ("contact_counter", "CHANNELS", "2", "channels_must_be_1_or_4"),
     ("contact_counter", "ROWS", "1", "columns_and_rows_must_be_2_to_64"),
     ("program_scheduler", "PROGRAMS", "4", "programs_must_be_1_to_3"),
@@ -27,6 +28,7 @@ const SENSELESS: [(&str, &str, &str, &str); 25] = [
     ("op", "SLIP_RELEASE", "1", "a_slip_ends_below_its_limit"),
     ("output", "WORDS", "3", "words_of_a_beat_must_be_1_2_or_4"),
     ("estimator_line", "CHANNELS", "2", "channels_must_be_1_or_4"),
+    ("grid_terms", "SIDE", "15", "a_side_has_13_points"),
     ("grid_search", "FRACTION", "25", "a_value_has_20_to_24_bits_of_fraction"),
     ("grid_search", "TAXELS", "3", "one_taxel_a_cycle_or_two_with_all_points"),
     ("grid_search", "PARALLEL", "26", "a_row_of_points_at_a_time_or_all_of_them"),
