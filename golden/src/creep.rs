@@ -64,13 +64,13 @@ fn taxels<'a>(creep: &'a mut Vec<f64>, frame: &'a mut [f64]) -> impl Iterator<It
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    const CREEP: Creep = Creep { strength: 0.4, seconds: 10.0, frames_per_second: 20.0 };
+    pub(crate) const CREEP: Creep = Creep { strength: 0.4, seconds: 10.0, frames_per_second: 20.0 };
 
     /// What a taxel with this creep reads of a load.
-    fn readings(creep: &Creep, load: &[f64]) -> Vec<f64> {
+    pub(crate) fn readings(creep: &Creep, load: &[f64]) -> Vec<f64> {
         let mut past = Vec::new();
         let mut read = |load: &f64| {
             let mut frame = [*load];

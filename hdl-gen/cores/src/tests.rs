@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use hdl_gen::cores::{cordic, fixed_to_float, float_to_fixed};
+use hdl_gen::plan::schedule::MACS_BITS;
 use rust_hdl_core::ast::{VerilogExpression as Expression, VerilogOp, VerilogOpUnary};
 use rust_hdl_core::prelude::*;
 
@@ -43,7 +44,7 @@ fn prints_plain_verilog() -> Result<(), CoreError> {
 fn says_what_the_references_say() -> Result<(), CoreError> {
     let cores = print_all()?;
     for (path, said) in [
-        ("sptfra_row_sequencer.v", "macs[13:0]".to_owned()),
+        ("sptfra_row_sequencer.v", format!("macs[{}:0]", MACS_BITS - 1)),
         ("sptfra_cordic.v", format!("in cycle {}.", cordic::LATENCY)),
         ("sptfra_cordic.v", format!("{} fraction bits", cordic::ANGLE_FRACTION_BITS)),
         ("sptfra_cordic.v", format!("{} micro-rotations", cordic::ITERATIONS)),

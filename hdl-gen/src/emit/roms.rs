@@ -10,6 +10,7 @@ use crate::plan::counts::EXPONENT_BITS;
 use crate::plan::curve::{SEGMENT_BITS, SHIFT_BITS};
 use crate::plan::gain::GAIN_BITS;
 use crate::plan::product::{SUMS_DESTINATION, destination, destination_bits};
+use crate::plan::schedule::MACS_BITS;
 use crate::plan::vector_formats::ARM_BITS;
 
 use crate::resources::memory::{BANK, banks};
@@ -31,7 +32,8 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
         insert_rom(files, file("values"), hex(values, depth, bits));
         let columns = program.words.iter().map(|&(column, _)| u128::from(column));
         insert_rom(files, file("columns"), hex(columns, depth, column_bits));
-        let segments = program.segments.iter().map(|segment| u128::from((segment.kind as u32) << 14 | segment.macs));
+        let segments =
+            program.segments.iter().map(|segment| u128::from((segment.kind as u32) << MACS_BITS | segment.macs));
         insert_rom(files, file("macs"), hex(segments, schedule.segment_depth(), 16));
     }
     let slots = (0..schedule.slots.len()).map(|index| slot(plan, index));

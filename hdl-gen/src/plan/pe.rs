@@ -5,7 +5,9 @@ use super::matrix::Entry;
 /// Results that a PE holds until the collector comes.
 pub const RESULT_BUFFERS: usize = 2;
 /// A count in the MACs-per-row ROM has 14 bits.
-pub const MAX_SEGMENT: u32 = (1 << 14) - 1;
+pub const MAX_SEGMENT: u32 = (1 << MACS_BITS) - 1;
+/// Bits of that number in a row word; its kind stands above them.
+pub const MACS_BITS: u32 = 14;
 
 /// What a PE does with the sum of a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

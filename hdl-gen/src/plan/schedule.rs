@@ -13,7 +13,7 @@
 
 use super::matrix::QuantisedMatrix;
 use super::partition::{Partitioner, Stream, Timing};
-pub use super::pe::{MAX_SEGMENT, PeProgram, RESULT_BUFFERS, Segment, SegmentKind, WriteBackSlot};
+pub use super::pe::{MACS_BITS, MAX_SEGMENT, PeProgram, RESULT_BUFFERS, Segment, SegmentKind, WriteBackSlot};
 use super::product::{Epilogue, Product, Vector, mirror, spacing, take_to_operand};
 use crate::timing::latency::{PROGRAM_GAP, collector_jump};
 

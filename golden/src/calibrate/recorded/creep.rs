@@ -228,19 +228,7 @@ fn spread(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const CREEP: Creep = Creep { strength: 0.4, seconds: 10.0, frames_per_second: 20.0 };
-
-    /// What a taxel with this creep reads of a load.
-    fn readings(creep: &Creep, load: &[f64]) -> Vec<f64> {
-        let mut past = Vec::new();
-        let mut read = |load: &f64| {
-            let mut frame = [*load];
-            creep.add(&mut past, &mut frame);
-            frame[0]
-        };
-        load.iter().map(&mut read).collect()
-    }
+    use crate::creep::tests::{CREEP, readings};
 
     /// So many frames, from the tenth second on under a load that is put down within so many frames.
     fn step(frames: usize, ramp: usize) -> Vec<f64> {
